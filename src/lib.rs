@@ -1,1 +1,3 @@
-
+//! An instrument for observing clouds.
+pub mod gpu;
+pub mod shader;
