@@ -1,0 +1,129 @@
+//! Cloud layers: where they are, what shapes them, and what they do to light.
+
+use crate::{choices, params};
+
+choices! {
+    /// How a layer turns the weather map into density.
+    pub enum DensityModel {
+        /// Bodies from the map, a height profile by cloud type, billows and wisps: the program's own model.
+        Profile ("Profile"),
+        /// Map times height function times four-channel Worley noise (Koblížek 2019, equations 2.1 and 2.2).
+        Thesis ("Thesis"),
+    }
+}
+
+choices! {
+    /// How a droplet scatters light, as a function of the angle alone. All are normalised over the sphere.
+    pub enum PhaseKind {
+        /// The same in all directions.
+        Isotropic ("Isotropic"),
+        /// Henyey and Greenstein 1941: one lobe with mean cosine g.
+        HenyeyGreenstein ("Henyey-Greenstein"),
+        /// A forward and a backward Henyey-Greenstein lobe, mixed.
+        TwoLobe ("Two-lobe Henyey-Greenstein"),
+        /// Cornette and Shanks 1992: Henyey-Greenstein times a Rayleigh-like term.
+        CornetteShanks ("Cornette-Shanks"),
+        /// Schlick's rational approximation of Henyey-Greenstein.
+        Schlick ("Schlick"),
+        /// Rayleigh: particles far smaller than the wavelength.
+        Rayleigh ("Rayleigh"),
+    }
+}
+
+params! {
+    /// The directions in which droplets scatter.
+    pub struct Phase ("Phase function") {
+        /// Formula of the phase function.
+        kind: PhaseKind = PhaseKind::TwoLobe;
+        /// Anisotropy of the forward lobe: the mean cosine for Henyey-Greenstein. 0 is isotropic, towards 1 is forward.
+        g: f32 = 0.8, -0.99..=0.99, None;
+        /// Anisotropy of the second lobe; negative scatters back towards the light.
+        back_g: f32 = -0.25, -0.99..=0.99, None;
+        /// Share of the second lobe.
+        back_mix: f32 = 0.25, 0.0..=1.0, None;
+    }
+}
+
+params! {
+    /// One sheet of cloud between two heights.
+    pub struct CloudLayer ("Cloud layer") {
+        /// Whether the layer is drawn.
+        enabled: bool = true;
+        /// How the layer turns the weather map into density.
+        model: DensityModel = DensityModel::Profile;
+        /// Height of the cloud base above sea level.
+        base_m: f32 = 1200.0, 0.0..=15_000.0, Metres;
+        /// Greatest height of the cloud tops above sea level.
+        top_m: f32 = 2700.0, 10.0..=20_000.0, Metres;
+        /// Added to the coverage of the weather map for this layer.
+        coverage_offset: f32 = 0.0, -1.0..=1.0, None;
+        /// Width of the soft edge of a cloud body, as a part of the map's range.
+        edge_softness: f32 = 0.26, 0.02..=1.0, None;
+        /// Size of this layer's copy of the weather map, relative to the map's own.
+        map_scale: f32 = 1.0, 0.05..=20.0, None, logarithmic;
+        /// Shift of this layer's copy of the map towards the east.
+        map_east_m: f32 = 0.0, -100_000.0..=100_000.0, Metres;
+        /// Shift of this layer's copy of the map towards the south.
+        map_south_m: f32 = 0.0, -100_000.0..=100_000.0, Metres;
+        /// How much tops vary in height from body to body.
+        top_variation: f32 = 0.6, 0.0..=1.0, None;
+        /// How far tops spread out sideways, as an anvil.
+        anvil: f32 = 0.0, 0.0..=1.0, None;
+        /// Edge length of the tile of the large 3D noise.
+        shape_size_m: f32 = 2800.0, 200.0..=50_000.0, Metres, logarithmic;
+        /// Strength of the large 3D noise that makes billows.
+        shape_strength: f32 = 1.0, 0.0..=2.0, None;
+        /// Edge length of the tile of the small 3D noise.
+        detail_size_m: f32 = 600.0, 20.0..=10_000.0, Metres, logarithmic;
+        /// Strength of the small noise that erodes the surface. 0 removes its texture reads.
+        detail_strength: f32 = 0.9, 0.0..=2.0, None;
+        /// How wispy (rather than billowy) the erosion is over the whole height.
+        wispiness: f32 = 0.0, 0.0..=1.0, None;
+        /// How far curl noise drags the detail. 0 removes its texture reads.
+        curl_m: f32 = 60.0, 0.0..=1000.0, Metres;
+        /// Edge length of the tile of the curl noise.
+        curl_size_m: f32 = 1500.0, 50.0..=50_000.0, Metres, logarithmic;
+        /// Artists' multiplier of the density.
+        density: f32 = 1.0, 0.0..=10.0, None;
+        /// Steepness of the step from clear air to full density.
+        sharpness: f32 = 1.0, 0.1..=4.0, None;
+        /// Light scattered per metre at full density.
+        scattering_per_m: f32 = 0.08, 0.0..=1.0, PerMetre, logarithmic;
+        /// Light absorbed per metre at full density. Water droplets absorb almost nothing.
+        absorption_per_m: f32 = 0.0, 0.0..=1.0, PerMetre;
+        /// Extinction towards the light relative to the true one; below 1 stands in for multiple scattering (the thesis uses 0.4 on cumulus).
+        shadow_extinction_scale: f32 = 1.0, 0.0..=1.0, None;
+        /// Directions in which droplets scatter.
+        phase: Phase = Phase::default();
+        /// Artists' multiplier of the scattered sunlight.
+        phase_gain: f32 = 1.0, 0.0..=10.0, None;
+        /// Artists' multiplier of all light from this layer.
+        brightness: f32 = 1.0, 0.0..=10.0, None;
+        /// Speed of this layer relative to the wind.
+        wind_scale: f32 = 1.0, -4.0..=4.0, None;
+        /// Sideways lean of the tops downwind, over the height of the layer.
+        lean_m: f32 = 300.0, 0.0..=5000.0, Metres;
+    }
+}
+
+impl CloudLayer {
+    /// Whether the layer can hold any cloud at all.
+    pub fn is_visible(&self) -> bool {
+        self.enabled && self.density > 0.0 && self.extinction_per_m() > 0.0 && self.top_m - self.base_m >= 1.0
+    }
+
+    /// Light lost per metre at full density.
+    pub fn extinction_per_m(&self) -> f32 {
+        self.scattering_per_m + self.absorption_per_m
+    }
+
+    /// Whether the small noise is read.
+    pub fn has_detail(&self) -> bool {
+        self.detail_strength > 0.0
+    }
+
+    /// Whether curl noise drags the small noise.
+    pub fn has_curl(&self) -> bool {
+        self.has_detail() && self.curl_m > 0.0
+    }
+}

@@ -1,0 +1,137 @@
+//! What the sky is ([`Scene`]) and how it is computed ([`Quality`]): plain data, declared once, with units and ranges.
+//!
+//! Axes: x east, y up, z south, in metres from the sea-level point under the world's origin. Wind is named by where it
+//! blows from, azimuths run clockwise from north. Angles are degrees here, where people see them, and radians from
+//! [`crate::render::uniforms`] on.
+
+mod frame;
+mod layer;
+mod light;
+pub mod param;
+mod place;
+mod quality;
+mod sun_position;
+mod weather;
+
+pub use frame::{Frame, Output};
+pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
+pub use light::{Air, Moon, Scattering, Sun, SunPlacement, Sunshafts};
+pub use place::{Camera, Display, Domain, DomainKind, Ground, Projection, ToneMap};
+pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
+pub use weather::{MapEdge, MapLayer, MapSource, Weather, Wind};
+
+use crate::params;
+
+/// Most cloud layers one scene may hold.
+pub const MAX_LAYERS: usize = 4;
+
+params! {
+    /// What the sky is.
+    pub struct Scene ("Scene") {
+        /// Sheets of cloud; they may overlap.
+        layers: Vec<CloudLayer> = vec![CloudLayer::default()];
+        /// Where clouds are.
+        weather: Weather = Weather::default();
+        /// Wind that carries them.
+        wind: Wind = Wind::default();
+        /// The sun.
+        sun: Sun = Sun::default();
+        /// The moon and the light of the night.
+        moon: Moon = Moon::default();
+        /// Scattered light inside clouds.
+        scattering: Scattering = Scattering::default();
+        /// The clear air.
+        air: Air = Air::default();
+        /// Streaks of light.
+        sunshafts: Sunshafts = Sunshafts::default();
+        /// The ground.
+        ground: Ground = Ground::default();
+        /// The space that holds clouds.
+        domain: Domain = Domain::default();
+        /// The eye.
+        camera: Camera = Camera::default();
+        /// How light becomes the picture on the screen.
+        display: Display = Display::default();
+    }
+}
+
+impl Scene {
+    /// Rules that concern more than one field, as sentences; empty when all is well.
+    pub fn problems(&self) -> Vec<String> {
+        let mut problems = Vec::new();
+        if self.layers.len() > MAX_LAYERS {
+            problems.push(format!("layers: {} cloud layers, but at most {MAX_LAYERS} can be drawn", self.layers.len()));
+        }
+        if self.weather.layers.len() > MAX_LAYERS {
+            problems.push(format!(
+                "weather.layers: {} map layers, but at most {MAX_LAYERS} can be combined",
+                self.weather.layers.len()
+            ));
+        }
+        for (index, layer) in self.layers.iter().enumerate() {
+            if layer.top_m < layer.base_m {
+                problems.push(format!(
+                    "layers.{index}.top_m = {} m lies below layers.{index}.base_m = {} m; raise the top or lower the base",
+                    layer.top_m, layer.base_m
+                ));
+            }
+        }
+        problems
+    }
+
+    /// The layers that can hold any cloud.
+    pub fn visible_layers(&self) -> impl Iterator<Item = &CloudLayer> {
+        let coverage = self.weather.greatest_coverage();
+        self.layers
+            .iter()
+            .take(MAX_LAYERS)
+            .filter(move |layer| layer.is_visible() && coverage + layer.coverage_offset > 0.0)
+    }
+
+    /// Unit vector towards the sun.
+    pub fn towards_sun(&self) -> glam::Vec3 {
+        let (elevation, azimuth) = sun_position::elevation_azimuth_deg(&self.sun);
+        direction(elevation, azimuth)
+    }
+
+    /// Unit vector towards the moon.
+    pub fn towards_moon(&self) -> glam::Vec3 {
+        direction(self.moon.elevation_deg, self.moon.azimuth_deg)
+    }
+}
+
+impl Weather {
+    /// The coverage that may occur anywhere, before the offset of a layer.
+    pub fn greatest_coverage(&self) -> f32 {
+        if self.coverage_changes { self.coverage.max(self.coverage_change_to) } else { self.coverage }
+    }
+}
+
+/// Unit vector of an elevation and an azimuth clockwise from north.
+pub fn direction(elevation_deg: f32, azimuth_deg: f32) -> glam::Vec3 {
+    let (sin_elevation, cos_elevation) = f64::from(elevation_deg).to_radians().sin_cos();
+    let (sin_azimuth, cos_azimuth) = f64::from(azimuth_deg).to_radians().sin_cos();
+    glam::DVec3::new(cos_elevation * sin_azimuth, sin_elevation, -cos_elevation * cos_azimuth).as_vec3()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn azimuth_runs_clockwise_from_north() {
+        assert!(direction(0.0, 0.0).abs_diff_eq(glam::Vec3::NEG_Z, 1e-6), "north is −z");
+        assert!(direction(0.0, 90.0).abs_diff_eq(glam::Vec3::X, 1e-6), "east is x");
+        assert!(direction(90.0, 12.0).abs_diff_eq(glam::Vec3::Y, 1e-6), "up is y");
+    }
+
+    #[test]
+    fn a_layer_upside_down_is_named() {
+        let mut scene = Scene::default();
+        assert!(scene.problems().is_empty(), "the default scene is sound");
+        scene.layers[0].top_m = 100.0;
+        let problems = scene.problems();
+        assert!(problems.len() == 1 && problems[0].contains("layers.0.top_m"), "{problems:?}");
+        assert_eq!(scene.visible_layers().count(), 0, "and holds no cloud");
+    }
+}

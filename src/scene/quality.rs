@@ -1,0 +1,163 @@
+//! Quality: how the sky is computed. It belongs to the user and the command line, not to the sky.
+
+use crate::{choices, params};
+
+choices! {
+    /// The share of pixels that one frame computes anew.
+    pub enum UpdateFraction {
+        /// Every pixel.
+        Full ("1/1"),
+        /// Every other pixel, as on a checkerboard.
+        Half ("1/2"),
+        /// One of each 2×2.
+        Quarter ("1/4"),
+        /// One of each 4×4.
+        Sixteenth ("1/16"),
+    }
+}
+
+choices! {
+    /// The order in which the pixels of a 4×4 block take their turn (Koblížek 2019, figure 3.3).
+    pub enum UpdateOrder {
+        /// The cross pattern, figure 3.3(c): neighbours in time are far apart.
+        Cross ("Cross"),
+        /// Multiples of seven, figure 3.3(b).
+        Sevens ("×7"),
+        /// Row by row, figure 3.3(a).
+        Naive ("Naive"),
+    }
+}
+
+choices! {
+    /// A named set of quality settings.
+    pub enum QualityLevel {
+        /// For slow machines and quick looks.
+        Draft ("Draft"),
+        /// For work in the viewport.
+        Preview ("Preview"),
+        /// For stills.
+        High ("High"),
+        /// For export.
+        Final ("Final"),
+    }
+}
+
+params! {
+    /// How the sky is computed.
+    pub struct Quality ("Quality") {
+        /// Most steps along a view ray.
+        view_steps: u32 = 160, 4..=1024, None;
+        /// Length of the first step inside cloud.
+        step_m: f32 = 34.0, 1.0..=1000.0, Metres, logarithmic;
+        /// Growth of the step with distance: metres more per metre.
+        step_growth: f32 = 0.006, 0.0..=0.1, None;
+        /// Length of a step in clear air relative to one in cloud.
+        empty_stride: f32 = 3.0, 1.0..=8.0, None;
+        /// Greatest distance at which clouds are drawn.
+        max_distance_m: f32 = 150_000.0, 1000.0..=500_000.0, Metres, logarithmic;
+        /// Steps from a sample towards the light.
+        light_steps: u32 = 6, 1..=128, None;
+        /// Distance covered towards the light.
+        light_reach_m: f32 = 2600.0, 50.0..=20_000.0, Metres, logarithmic;
+        /// Length of each light step relative to the one before.
+        light_growth: f32 = 1.9, 1.0..=4.0, None;
+        /// How many of the light steps read the small noise.
+        light_detail_steps: u32 = 1, 0..=128, None;
+        /// Octaves of multiple scattering on top of the first. 0 is true single scattering.
+        octaves: u32 = 5, 0..=7, None;
+        /// Transmittance below which a ray ends.
+        early_exit: f32 = 0.01, 0.0..=0.2, None;
+        /// Distance at which the small noise has faded to its mean.
+        detail_distance_m: f32 = 60_000.0, 100.0..=500_000.0, Metres, logarithmic;
+        /// Coarser (above 0) or finer mip levels of the noises with distance.
+        noise_level_bias: f32 = 0.0, -4.0..=4.0, None;
+        /// Share of pixels computed anew in a frame.
+        update: UpdateFraction = UpdateFraction::Sixteenth;
+        /// Order in which pixels take their turn.
+        update_order: UpdateOrder = UpdateOrder::Cross;
+        /// Resolution of the picture relative to its frame.
+        resolution_scale: f32 = 1.0, 0.1..=2.0, None;
+        /// Edge length of the map of cloud shadows on the ground.
+        shadow_map_px: u32 = 192, 32..=1024, Pixels;
+        /// Samples along a streak of light.
+        shaft_samples: u32 = 24, 4..=128, None;
+    }
+}
+
+impl Quality {
+    /// The settings behind a name.
+    pub fn level(level: QualityLevel) -> Self {
+        match level {
+            QualityLevel::Draft => Self {
+                view_steps: 96,
+                step_m: 60.0,
+                step_growth: 0.012,
+                light_steps: 4,
+                light_detail_steps: 0,
+                octaves: 4,
+                resolution_scale: 0.75,
+                shadow_map_px: 128,
+                ..Self::default()
+            },
+            QualityLevel::Preview => Self::default(),
+            QualityLevel::High => Self {
+                view_steps: 400,
+                step_m: 18.0,
+                step_growth: 0.0025,
+                empty_stride: 2.0,
+                light_steps: 9,
+                light_growth: 1.6,
+                light_detail_steps: 3,
+                octaves: 6,
+                early_exit: 0.004,
+                update: UpdateFraction::Full,
+                shadow_map_px: 384,
+                shaft_samples: 48,
+                ..Self::default()
+            },
+            QualityLevel::Final => Self {
+                view_steps: 1000,
+                step_m: 10.0,
+                step_growth: 0.0014,
+                empty_stride: 1.5,
+                light_steps: 12,
+                light_growth: 1.45,
+                light_detail_steps: 6,
+                octaves: 7,
+                early_exit: 0.001,
+                detail_distance_m: 200_000.0,
+                update: UpdateFraction::Full,
+                shadow_map_px: 512,
+                shaft_samples: 64,
+                ..Self::default()
+            },
+        }
+    }
+
+    /// The lengths of all light steps add up to [`Self::light_reach_m`]; this is the first of them.
+    pub fn first_light_step_m(&self) -> f32 {
+        let steps = f64::from(self.light_steps);
+        let growth = f64::from(self.light_growth);
+        let sum = if (growth - 1.0).abs() < 1e-4 { steps } else { (growth.powf(steps) - 1.0) / (growth - 1.0) };
+        (f64::from(self.light_reach_m) / sum) as f32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn light_steps_add_up_to_the_reach() {
+        for growth in [1.0, 1.00001, 1.5, 3.0] {
+            let quality = Quality { light_growth: growth, light_steps: 9, ..Quality::default() };
+            let mut step = f64::from(quality.first_light_step_m());
+            let mut sum = 0.0;
+            for _ in 0..9 {
+                sum += step;
+                step *= f64::from(growth);
+            }
+            assert!((sum / f64::from(quality.light_reach_m) - 1.0).abs() < 1e-3, "growth {growth}: {sum}");
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! The weather map: document data that says where clouds are and of which type.
+
+use super::param::FileName;
+use crate::{choices, params};
+
+choices! {
+    /// Where a layer of the weather map comes from.
+    pub enum MapSource {
+        /// Layered Perlin and Worley noise.
+        Generated ("Generated"),
+        /// A PNG or EXR image of the user's.
+        Image ("Image"),
+        /// A numbered sequence of images, played over time.
+        Sequence ("Image sequence"),
+    }
+}
+
+choices! {
+    /// What lies beyond the edge of the map.
+    pub enum MapEdge {
+        /// The map again.
+        Repeat ("Repeat"),
+        /// The map's outermost texels.
+        Clamp ("Clamp"),
+        /// No cloud.
+        Clear ("Clear"),
+    }
+}
+
+params! {
+    /// One layer of the weather map.
+    pub struct MapLayer ("Map layer") {
+        /// Where the layer comes from.
+        source: MapSource = MapSource::Generated;
+        /// Image file (red: cumulus, green: stratus, blue: stratocumulus, each the greatest density there), or the pattern of a sequence such as `map.####.png`.
+        image: FileName = FileName::default();
+        /// Images shown per second of scene time, for a sequence.
+        images_per_sec: f32 = 1.0, 0.001..=60.0, None, logarithmic;
+        /// Seed of the generated map.
+        seed: u32 = 1, 0..=999_999, None;
+        /// Large cells across the map; each is a field of cloud.
+        large_cells: u32 = 8, 2..=32, None;
+        /// Share of small separate puffs among the large fields.
+        small_share: f32 = 0.5, 0.0..=1.0, None;
+        /// Strength of the Perlin noise that frays the cells.
+        fray: f32 = 0.35, 0.0..=1.0, None;
+        /// How much the amount of cloud differs from region to region.
+        contrast: f32 = 0.35, 0.0..=1.0, None;
+        /// Probability weight of cumulus cells.
+        cumulus: f32 = 1.0, 0.0..=1.0, None;
+        /// Probability weight of stratus cells.
+        stratus: f32 = 0.0, 0.0..=1.0, None;
+        /// Probability weight of stratocumulus cells.
+        stratocumulus: f32 = 0.0, 0.0..=1.0, None;
+    }
+}
+
+params! {
+    /// Where clouds are: a map over the ground and how much of it they cover.
+    pub struct Weather ("Weather") {
+        /// Share of the sky that clouds cover.
+        coverage: f32 = 0.45, 0.0..=1.0, None;
+        /// Whether another coverage is on its way from the upwind horizon.
+        coverage_changes: bool = false;
+        /// The coverage that arrives from the horizon.
+        coverage_change_to: f32 = 0.8, 0.0..=1.0, None;
+        /// Distance of the front at time 0, upwind.
+        front_distance_m: f32 = 30_000.0, 0.0..=300_000.0, Metres;
+        /// Width of the transition at the front.
+        front_width_m: f32 = 15_000.0, 100.0..=200_000.0, Metres, logarithmic;
+        /// Edge length of the map over the ground.
+        size_m: f32 = 24_000.0, 1000.0..=500_000.0, Metres, logarithmic;
+        /// What lies beyond the edge of the map.
+        edge: MapEdge = MapEdge::Repeat;
+        /// Whether the generated map moves with the wind.
+        moves: bool = true;
+        /// Time in which the generated map becomes another. 0 holds it still.
+        evolution_secs: f32 = 1200.0, 0.0..=100_000.0, Seconds;
+        /// Layers of the map, from the bottom; the last one that has data at a place decides.
+        layers: Vec<MapLayer> = vec![MapLayer::default()];
+    }
+}
+
+params! {
+    /// Wind that carries the clouds.
+    pub struct Wind ("Wind") {
+        /// Where the wind blows from, clockwise from north.
+        from_deg: f32 = 270.0, 0.0..=360.0, Degrees;
+        /// Speed of the wind.
+        speed_mps: f32 = 10.0, 0.0..=100.0, MetresPerSecond;
+        /// Speed of the large noise relative to the wind; other than 1 makes shapes evolve.
+        shape_speed: f32 = 0.9, -4.0..=4.0, None;
+        /// Speed of the small noise relative to the wind.
+        detail_speed: f32 = 0.8, -4.0..=4.0, None;
+        /// Speed at which the large noise rises.
+        rise_mps: f32 = 0.5, -10.0..=10.0, MetresPerSecond;
+    }
+}
