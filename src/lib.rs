@@ -1,1 +1,3 @@
+//! Nephoscope: volumetric skies that show what accuracy costs in time.
 
+pub mod export;
