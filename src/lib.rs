@@ -1,6 +1,7 @@
 //! An instrument for observing clouds.
+pub mod export;
 pub mod gpu;
-pub mod render;
-pub mod shader;
 pub mod plan;
+pub mod render;
 pub mod scene;
+pub mod shader;
