@@ -1,0 +1,3 @@
+//! The GPU, without a word about clouds.
+
+pub mod gpu_struct;
