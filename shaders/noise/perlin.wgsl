@@ -6,19 +6,25 @@ fn wrap_cell(cell: vec3i, period: i32) -> vec3i {
   return ((cell % period) + period) % period;
 }
 
+// wrap_cell for a neighbour, at most one cell outside of 0..period, without the two slow integer divisions.
+fn wrap_neighbour(cell: vec3i, period: i32) -> vec3i {
+  let n = vec3i(period);
+  return select(select(cell, cell + n, cell < vec3i(0)), cell - n, cell >= n);
+}
+
 // The quintic of Perlin, "Improving Noise", 2002: zero first and second derivatives at both ends.
 fn fade3(t: vec3f) -> vec3f {
   return t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
 }
 
 fn corner_gradient(cell: vec3i, period: i32, seed: u32, offset: vec3f) -> f32 {
-  return dot(hash_cell(wrap_cell(cell, period), seed) * 2.0 - 1.0, offset);
+  return dot(hash_cell(wrap_neighbour(cell, period), seed) * 2.0 - 1.0, offset);
 }
 
 // Gradient noise with period lattice cells per tile; within -1..1, deviation about 0.2.
 fn perlin(p: vec3f, period: i32, seed: u32) -> f32 {
   let q = p * f32(period);
-  let cell = vec3i(floor(q));
+  let cell = wrap_cell(vec3i(floor(q)), period);
   let f = q - floor(q);
   let w = fade3(f);
   let c000 = corner_gradient(cell, period, seed, f);

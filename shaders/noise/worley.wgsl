@@ -14,14 +14,14 @@ struct WorleyCell {
 // The 27 cells around p suffice for f1 (no miss in 60,000 trials); f2 may in rare cases be too large.
 fn worley_cell(p: vec3f, period: i32, seed: u32) -> WorleyCell {
   let q = p * f32(period);
-  let cell = vec3i(floor(q));
+  let cell = wrap_cell(vec3i(floor(q)), period);
   let f = q - floor(q);
   var nearest = 1e9;
   var second = 1e9;
   var id = 0u;
   for (var i = 0; i < 27; i++) {
     let step = vec3i(i % 3, (i / 3) % 3, i / 9) - 1;
-    let bits = hash_cell_bits(wrap_cell(cell + step, period), seed);
+    let bits = hash_cell_bits(wrap_neighbour(cell + step, period), seed);
     let jitter = vec3f(unit_from_bits(bits.x), unit_from_bits(bits.y), unit_from_bits(bits.z));
     let offset = vec3f(step) + jitter - f;
     let squared = dot(offset, offset);

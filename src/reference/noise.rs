@@ -148,6 +148,14 @@ mod tests {
     }
 
     #[test]
+    fn the_flow_has_the_stated_speed() {
+        let speeds: Vec<f32> = positions(4000).map(|p| curl2(p.truncate(), 8, 3, 1e-3).length()).collect();
+        let mean = speeds.iter().sum::<f32>() / 4000.0;
+        let fastest = speeds.iter().fold(0.0, |a: f32, b| a.max(*b));
+        assert!((0.5..0.7).contains(&mean) && fastest < 3.0, "mean speed {mean}, greatest {fastest}");
+    }
+
+    #[test]
     fn seeds_are_not_shifts_of_each_other() {
         let differs = positions(200).filter(|p| (perlin(*p, 4, 1) - perlin(*p + 0.25, 4, 2)).abs() > 1e-3).count();
         assert!(differs > 180, "only {differs} of 200 values differ");
