@@ -213,7 +213,7 @@ mod tests {
         let read = |_: &str| Ok(Some(main.into()));
         let generated = [Inner::GENERATED, Outer::GENERATED];
         let source = crate::shader::compose_with(&read, "main.wgsl", &BTreeSet::new(), &[], &generated).unwrap();
-        let module = crate::shader::validate(&source).unwrap();
+        let (module, _) = crate::shader::validate(&source).unwrap();
         assert_same(&module, Inner::NAME, &offsets!(Inner: direction weight cell texel), size_of::<Inner>());
         let outer =
             offsets!(Outer: world_from_view inner inners bands position count cell step tile radius uv pad low high);

@@ -7,12 +7,13 @@ use wgpu::naga;
 
 use super::{ShaderError, ShaderSource};
 
-/// Parses and validates `source` with the capabilities every WebGPU device has; returns naga's module.
+/// Parses and validates `source` with the capabilities every WebGPU device has; returns naga's module and
+/// what its analysis found out (which entry point uses which binding).
 ///
 /// # Errors
 /// [`ShaderError::Invalid`] with the file and line of the first label, naga's message, its chain of causes and the
 /// other labels with their own places.
-pub fn validate(source: &ShaderSource) -> Result<naga::Module, ShaderError> {
+pub fn validate(source: &ShaderSource) -> Result<(naga::Module, naga::valid::ModuleInfo), ShaderError> {
     let module = naga::front::wgsl::parse_str(&source.code).map_err(|error| {
         let labels = error.labels().map(|(span, text)| (span, text.to_owned())).collect();
         invalid(source, error.message().to_owned(), labels)
@@ -20,7 +21,7 @@ pub fn validate(source: &ShaderSource) -> Result<naga::Module, ShaderError> {
     let mut validator =
         naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::default());
     match validator.validate(&module) {
-        Ok(_) => Ok(module),
+        Ok(info) => Ok((module, info)),
         Err(error) => {
             let mut message = error.as_inner().to_string();
             let mut cause = error.as_inner().source();
