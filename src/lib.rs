@@ -1,3 +1,5 @@
-//! An instrument for observing clouds.
+//! Nephoscope: a desktop studio for volumetric skies.
+
 pub mod gpu;
+pub mod reference;
 pub mod shader;
