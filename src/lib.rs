@@ -2,4 +2,5 @@
 
 pub mod gpu;
 pub mod reference;
+pub mod render;
 pub mod shader;

@@ -1,0 +1,4 @@
+//! From a frame to an image.
+
+pub mod pass;
+pub mod uniforms;

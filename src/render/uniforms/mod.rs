@@ -1,0 +1,3 @@
+//! Structs shared with the shaders.
+
+pub mod air;
