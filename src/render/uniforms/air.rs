@@ -28,9 +28,10 @@ pub const SUN_ILLUMINANCE_LX: f32 = 128_000.0;
 /// Half the angle that the sun, or the moon, subtends, in degrees.
 pub const DISC_RADIUS_DEG: f32 = 0.2667;
 
-/// The colour of sunlight above the air in linear Rec.709, of luminance 1.
+/// The colour of sunlight above the air in linear Rec.709, of luminance 1: half way from the true one, (1, 0.89, 0.87) for
+/// D65 as white, to a camera balanced for daylight; a neutral sun leaves a green cast over low suns.
 pub fn solar_tint() -> Vec3 {
-    let tint = dvec3(1.0, 0.98, 0.95);
+    let tint = dvec3(1.0, 0.955, 0.92);
     (tint / tint.dot(dvec3(0.2126, 0.7152, 0.0722))).as_vec3()
 }
 
