@@ -58,6 +58,7 @@ files! {
     "test/eval_phase.wgsl",
     "test/eval_random.wgsl",
     "test/eval_shell.wgsl",
+    "test/eval_sky.wgsl",
 }
 
 #[cfg(test)]
