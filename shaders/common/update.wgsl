@@ -1,4 +1,5 @@
 // Which pixel each ray of a partial update computes (Koblížek 2019, section 3.2).
+#import "generated/CameraUniforms.wgsl"
 #import "generated/ViewUniforms.wgsl"
 
 // The pixel of a ray; at the right and bottom edge of odd sizes several rays may share the last one.

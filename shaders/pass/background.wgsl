@@ -3,6 +3,7 @@
 #import "common/random.wgsl"
 #import "common/shell.wgsl"
 #import "generated/BandUniforms.wgsl"
+#import "generated/CameraUniforms.wgsl"
 #import "generated/ViewUniforms.wgsl"
 #import "light/sky.wgsl"
 #if GROUND
@@ -12,17 +13,17 @@
 @group(0) @binding(0) var<uniform> view: ViewUniforms;
 @group(0) @binding(1) var<uniform> band: BandUniforms;
 @group(0) @binding(2) var<uniform> air: AirUniforms;
-@group(0) @binding(3) var linear_clamp: sampler;
 @group(0) @binding(4) var sky_view: texture_2d<f32>;
 @group(0) @binding(5) var sky_transmittance: texture_2d<f32>;
-#if GROUND
 @group(0) @binding(6) var linear_repeat: sampler;
+#if GROUND
 @group(0) @binding(7) var sky_ambient: texture_2d<f32>;
 @group(0) @binding(8) var sky_aerial_light: texture_3d<f32>;
 @group(0) @binding(9) var sky_aerial_transmittance: texture_3d<f32>;
 @group(2) @binding(1) var ground_distance_out: texture_storage_2d<r32float, write>;
 #endif
 #if SHADOW
+@group(0) @binding(3) var linear_clamp: sampler;
 @group(0) @binding(10) var cloud_shadow: texture_2d<f32>;
 #endif
 #if FLOAT
@@ -33,13 +34,13 @@
 
 fn sky_with_lights(dir: vec3f) -> vec3f {
   let altitude = max(view.camera.eye.y, 0.0);
-  var light = sky_radiance(sky_view, linear_clamp, air, dir);
+  var light = sky_radiance(sky_view, linear_repeat, air, dir);
   let discs = sun_disc(air, dir, view.pixel_angle) + moon_disc(air, dir, view.pixel_angle);
   if (max(discs.x, max(discs.y, discs.z)) > 0.0) {
-    light += discs * light_transmittance(sky_transmittance, linear_clamp, air, altitude, dir.y);
+    light += discs * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
   }
 #if STARS
-  light += stars(dir) * light_transmittance(sky_transmittance, linear_clamp, air, altitude, dir.y);
+  light += stars(dir) * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
 #endif
   return light;
 }
@@ -70,43 +71,53 @@ fn ground_height(p: vec2f) -> f32 {
 #endif
 }
 
-// Distance to the ground along a ray, or -1.
-fn ground_hit(origin: vec3f, dir: vec3f) -> f32 {
-  let sea = shell_roots(origin, dir, 0.0, ground.planet_radius_m);
-  let downward = sea.y > 0.0 && dot(origin, dir) + ground.planet_radius_m * dir.y < 0.0;
-  let sea_distance = select(-1.0, max(sea.x, 0.0), downward);
 #if TERRAIN
-  var start = 0.0;
-  let ceiling = shell_roots(origin, dir, ground.highest_m, ground.planet_radius_m);
-  if (altitude_at(origin, ground.planet_radius_m) > ground.highest_m) {
-    if (ceiling.y <= 0.0) {
-      return sea_distance;
-    }
-    start = max(ceiling.x, 0.0);
-  }
-  let end = min(select(max(ceiling.y, 0.0), sea_distance, downward), ground.reach_m);
+fn clearance_at(p: vec3f) -> f32 {
+  return altitude_at(p, ground.planet_radius_m) - ground_height(p.xz);
+}
+
+// Distance to the relief between start and end, or -1: steps by clearance, then halves the last one.
+fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
   var t = start;
-  var before = t;
-  for (var i = 0u; i < 96u && t < end; i++) {
-    let p = origin + dir * t;
-    let clearance = altitude_at(p, ground.planet_radius_m) - ground_height(p.xz);
-    if (clearance < 0.002 * t) {
-      var low = before;
-      var high = t;
-      for (var k = 0u; k < 5u; k++) {
-        let middle = 0.5 * (low + high);
-        let q = origin + dir * middle;
-        let above = altitude_at(q, ground.planet_radius_m) > ground_height(q.xz);
-        low = select(low, middle, above);
-        high = select(middle, high, above);
-      }
-      return max(high, 0.1);
+  var before = start;
+  var is_hit = false;
+  for (var i = 0u; i < 96u; i++) {
+    if (t >= end) {
+      break;
+    }
+    let clearance = clearance_at(origin + dir * t);
+    if (clearance < 0.001 * t) {
+      is_hit = true;
+      break;
     }
     before = t;
     t += max(clearance * 0.7, 4.0 + 0.006 * t);
   }
+  for (var k = 0u; k < 6u; k++) {
+    let middle = 0.5 * (before + t);
+    let is_above = clearance_at(origin + dir * middle) > 0.0;
+    before = select(before, middle, is_above);
+    t = select(middle, t, is_above);
+  }
+  return select(-1.0, max(t, 0.1), is_hit);
+}
 #endif
+
+// Distance to the ground along a ray, or -1.
+fn ground_hit(origin: vec3f, dir: vec3f) -> f32 {
+  let sea = shell_roots(origin, dir, 0.0, ground.planet_radius_m);
+  let is_down = sea.y > 0.0 && dot(origin, dir) + ground.planet_radius_m * dir.y < 0.0;
+  let sea_distance = select(-1.0, max(sea.x, 0.0), is_down);
+#if TERRAIN
+  let ceiling = shell_roots(origin, dir, ground.highest_m, ground.planet_radius_m);
+  let is_above = altitude_at(origin, ground.planet_radius_m) > ground.highest_m;
+  let start = select(0.0, max(ceiling.x, 0.0), is_above);
+  let end = min(select(max(ceiling.y, 0.0), sea_distance, is_down), ground.reach_m);
+  let relief = relief_hit(origin, dir, start, select(-1.0, end, ceiling.y > 0.0));
+  return select(sea_distance, relief, relief >= 0.0);
+#else
   return sea_distance;
+#endif
 }
 
 fn ground_normal(p: vec3f, distance_m: f32) -> vec3f {
@@ -150,7 +161,7 @@ fn ground_light(p: vec3f, distance_m: f32) -> vec3f {
   let normal = ground_normal(p, distance_m);
   let altitude = max(altitude_at(p, ground.planet_radius_m), 0.0);
   let cosine = light_cos_zenith(p, ground.towards_light, ground.planet_radius_m);
-  var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_clamp, air, altitude, cosine);
+  var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
 #if SHADOW
   key *= light_through_cloud(p);
 #endif
@@ -170,7 +181,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   let hit = ground_hit(view.camera.eye, dir);
   var light: vec3f;
   if (hit >= 0.0) {
-    let ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_clamp, air, dir, hit);
+    let ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, hit);
     light = ground_light(view.camera.eye + dir * hit, hit) * ahead.transmittance + ahead.light;
   } else {
     light = sky_with_lights(dir);

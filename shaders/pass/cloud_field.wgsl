@@ -3,6 +3,7 @@
 #import "cloud/thesis.wgsl"
 #import "cloud/weather.wgsl"
 #import "common/shell.wgsl"
+#import "generated/LayerUniforms.wgsl"
 #import "generated/SceneUniforms.wgsl"
 
 const MODEL_PROFILE: u32 = 0u;

@@ -1,5 +1,6 @@
 // The finished light of a pixel: background through the clouds, the clouds, and sunshafts (their step 3).
 #import "common/math.wgsl"
+#import "generated/CameraUniforms.wgsl"
 #import "generated/ViewUniforms.wgsl"
 
 @group(0) @binding(0) var<uniform> view: ViewUniforms;

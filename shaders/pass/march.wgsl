@@ -21,8 +21,8 @@ override OCTAVES: u32 = 1u;
 #if GROUND
 @group(0) @binding(3) var ground_distance: texture_2d<f32>;
 #endif
-@group(0) @binding(4) var linear_clamp: sampler;
-@group(0) @binding(5) var<uniform> air: AirUniforms;
+// Behind the scene's uniform: llvmpipe (Mesa 22.3) crashes when a dynamically indexed block is its fourth.
+@group(1) @binding(12) var<uniform> air: AirUniforms;
 @group(0) @binding(6) var sky_transmittance: texture_2d<f32>;
 @group(0) @binding(7) var sky_ambient: texture_2d<f32>;
 #if AIR
@@ -58,7 +58,7 @@ var<private> air_known_to: f32;
 fn air_before(dir: vec3f, distance_m: f32) -> Aerial {
   if (distance_m > air_known_to) {
     let middle = distance_m * 1.04;
-    air_ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_clamp, air, dir, middle);
+    air_ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, middle);
     air_known_to = distance_m * 1.08;
   }
   return air_ahead;
@@ -74,12 +74,16 @@ fn key_light_at(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
   let moved = abs(altitude - key_light_altitude) > 150.0 || distance_m > key_light_distance;
   if (moved) {
     let cosine = light_cos_zenith(p, scene.towards_light, scene.planet_radius_m);
-    key_light = scene.light_illuminance * light_transmittance(sky_transmittance, linear_clamp, air, altitude, cosine);
+    key_light = scene.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
     key_light_altitude = altitude;
     key_light_distance = distance_m * 1.1 + 500.0;
   }
   return key_light;
 }
+
+// Ambient light of the whole sky: from above, from below. The same all along the ray.
+var<private> ambient_above: vec3f;
+var<private> ambient_below: vec3f;
 
 struct Media {
   extinction: f32,
@@ -87,7 +91,38 @@ struct Media {
   source: vec3f,
 }
 
-fn media_at(p: vec3f, distance_m: f32, reading: Reading, ambient: array<vec3f, 2>) -> Media {
+// Light of all layers at a place that has cloud.
+fn source_at(p: vec3f, altitude: f32, distance_m: f32, densities: array<f32, 4>, extinction: f32, level: f32) -> vec3f {
+  var octaves: array<f32, 8>;
+  let light = key_light_at(p, altitude, distance_m);
+  let depth = sun_optical_depth(p, level);
+#if COUNT
+  atomicAdd(&counters[2], scene.light_steps);
+#endif
+  var scale = 1.0;
+  var energy = 1.0;
+  for (var o = 0u; o <= OCTAVES; o++) {
+    octaves[o] = octave_weight(depth, scale, energy);
+    scale *= scene.octave_extinction;
+    energy *= scene.octave_energy;
+  }
+  var source = vec3f(0.0);
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    let share = densities[i] * layer.extinction_per_m / extinction * layer.albedo;
+    var scattered = 0.0;
+    for (var o = 0u; o <= OCTAVES; o++) {
+      scattered += octaves[o] * phases[i * 8u + o];
+    }
+    let h = clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0);
+    let above = ambient_share(h, scene.ambient_base_share, densities[i], scene.ambient_occlusion);
+    let around = ambient_above * above + ambient_below * (1.0 - h) * exp(-densities[i] * scene.ambient_occlusion);
+    source += share * (light * scattered * layer.sun_gain + around * layer.ambient_gain);
+  }
+  return source;
+}
+
+fn media_at(p: vec3f, distance_m: f32, reading: Reading) -> Media {
   let altitude = altitude_of(p);
   var densities: array<f32, 4>;
   var extinction = 0.0;
@@ -96,85 +131,54 @@ fn media_at(p: vec3f, distance_m: f32, reading: Reading, ambient: array<vec3f, 2
     densities[i] = density;
     extinction += density * scene.layers[i].extinction_per_m;
   }
-  if (extinction <= 0.0) {
-    return Media(0.0, vec3f(0.0));
-  }
-  var sun: array<f32, 8>;
-  let light = key_light_at(p, altitude, distance_m);
-  if (max(light.x, light.z) > 0.0) {
-    let depth = sun_optical_depth(p, reading.level);
-#if COUNT
-    atomicAdd(&counters[2], scene.light_steps);
-#endif
-    var scale = 1.0;
-    var energy = 1.0;
-    for (var o = 0u; o <= OCTAVES; o++) {
-      sun[o] = octave_weight(depth, scale, energy);
-      scale *= scene.octave_extinction;
-      energy *= scene.octave_energy;
-    }
-  }
   var source = vec3f(0.0);
-  for (var i = 0u; i < LAYERS; i++) {
-    let layer = scene.layers[i];
-    let share = densities[i] * layer.extinction_per_m / extinction * layer.albedo;
-    if (share <= 0.0) {
-      continue;
-    }
-    var scattered = 0.0;
-    for (var o = 0u; o <= OCTAVES; o++) {
-      scattered += sun[o] * phases[i * 8u + o];
-    }
-    let h = clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0);
-    let above = ambient_share(h, scene.ambient_base_share, densities[i], scene.ambient_occlusion);
-    let around = ambient[0] * above + ambient[1] * (1.0 - h) * exp(-densities[i] * scene.ambient_occlusion);
-    source += share * (light * scattered * layer.sun_gain + around * layer.ambient_gain);
+  if (extinction > 0.0) {
+    source = source_at(p, altitude, distance_m, densities, extinction, reading.level);
   }
   return Media(extinction, source);
 }
 
+var<private> steps_left: u32;
+
 // One stretch of the ray.
-fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32, steps_left: ptr<function, u32>,
-    ambient: array<vec3f, 2>) -> Seen {
+fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
   var seen = seen_before;
-  let first = scene.step_m + scene.step_growth * segment.x;
-  var t = segment.x + jitter * first;
-  var inside = false;
-  while (t < segment.y && *steps_left > 0u && seen.transmittance > scene.early_exit) {
-    *steps_left -= 1u;
+  var t = segment.x + jitter * (scene.step_m + scene.step_growth * segment.x);
+  // Short steps since the last cloud; long ones are allowed after a few.
+  var clear_steps = 1000u;
+  while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
+    steps_left -= 1u;
 #if COUNT
     atomicAdd(&counters[1], 1u);
 #endif
     let step = scene.step_m + scene.step_growth * t;
     let fade = clamp(t / scene.detail_distance_m, 0.0, 1.0);
     let level = max(0.0, log2(max(step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
-    let media = media_at(origin + dir * t, t, Reading(level, fade < 1.0, fade), ambient);
+    let media = media_at(origin + dir * t, t, Reading(level, fade < 1.0, fade));
     if (media.extinction <= 0.0) {
-      inside = false;
-      t += step * scene.empty_stride;
-      continue;
-    }
-    if (!inside && scene.empty_stride > 1.0 && t > segment.x + jitter * first) {
+      clear_steps = min(clear_steps + 1u, select(999u, 1000u, clear_steps == 1000u));
+      t += step * select(1.0, scene.empty_stride, clear_steps > 4u);
+    } else if (clear_steps > 4u && clear_steps < 1000u && scene.empty_stride > 1.0) {
       // Entered by a long step: go back to where the first short one would have been.
-      inside = true;
+      clear_steps = 0u;
       t -= step * (scene.empty_stride - 1.0);
-      continue;
-    }
-    inside = true;
-    // Deep inside, where little is left to see, two short steps become one.
-    let length = select(step, 2.0 * step, seen.transmittance < 0.1);
-    let alpha = absorbed(media.extinction * min(length, max(segment.y - t + 0.5 * step, 0.0)));
-    let share = seen.transmittance * alpha;
+    } else {
+      clear_steps = 0u;
+      // Deep inside, where little is left to see, two short steps become one.
+      let length = select(step, 2.0 * step, seen.transmittance < 0.1);
+      let alpha = absorbed(media.extinction * min(length, max(segment.y - t + 0.5 * step, 0.0)));
+      let share = seen.transmittance * alpha;
 #if AIR
-    let ahead = air_before(dir, t);
-    seen.light += share * (ahead.transmittance * media.source + ahead.light);
+      let ahead = air_before(dir, t);
+      seen.light += share * (ahead.transmittance * media.source + ahead.light);
 #else
-    seen.light += share * media.source;
+      seen.light += share * media.source;
 #endif
-    seen.distance_sum += share * t;
-    seen.weight_sum += share;
-    seen.transmittance *= 1.0 - alpha;
-    t += length;
+      seen.distance_sum += share * t;
+      seen.weight_sum += share;
+      seen.transmittance *= 1.0 - alpha;
+      t += length;
+    }
   }
   return seen;
 }
@@ -205,18 +209,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         anisotropy *= scene.octave_anisotropy;
       }
     }
-    let ambient = array<vec3f, 2>(
-      textureLoad(sky_ambient, vec2u(0u, 0u), 0).rgb * scene.ambient_top,
-      textureLoad(sky_ambient, vec2u(1u, 0u), 0).rgb * scene.ambient_bottom,
-    );
+    ambient_above = textureLoad(sky_ambient, vec2u(0u, 0u), 0).rgb * scene.ambient_top;
+    ambient_below = textureLoad(sky_ambient, vec2u(1u, 0u), 0).rgb * scene.ambient_bottom;
     let jitter = textureLoad(blue_noise, pixel % textureDimensions(blue_noise), 0).x * view.jitter.x + view.jitter.y;
-    var steps = scene.view_steps;
+    steps_left = scene.view_steps;
     key_light_altitude = -1e9;
     let first = vec2f(segments.first.x, min(segments.first.y, limit));
-    seen = march_segment(seen, origin, dir, first, jitter, &steps, ambient);
+    seen = march_segment(seen, origin, dir, first, jitter);
     let second = vec2f(segments.second.x, min(segments.second.y, limit));
     if (second.y > second.x) {
-      seen = march_segment(seen, origin, dir, second, jitter, &steps, ambient);
+      seen = march_segment(seen, origin, dir, second, jitter);
     }
   }
   let opened = after_early_exit(seen.transmittance, scene.early_exit);

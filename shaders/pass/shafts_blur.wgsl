@@ -2,6 +2,7 @@
 #import "common/camera.wgsl"
 #import "common/math.wgsl"
 #import "generated/ShaftUniforms.wgsl"
+#import "generated/CameraUniforms.wgsl"
 #import "generated/ViewUniforms.wgsl"
 
 @group(0) @binding(0) var<uniform> view: ViewUniforms;

@@ -1,5 +1,6 @@
 // Sunshafts, step 1 (Koblížek 2019, section 2.2.2): the clear sky that can send light past the edges of things.
 #import "common/camera.wgsl"
+#import "generated/CameraUniforms.wgsl"
 #import "generated/ViewUniforms.wgsl"
 
 @group(0) @binding(0) var<uniform> view: ViewUniforms;

@@ -9,7 +9,7 @@ pub mod scene;
 
 pub(super) use camera::{Eye, camera_uniforms};
 pub(super) use clouds::{scene_uniforms, wind_mps};
-pub(super) use ground::{ground_uniforms, tiles_across_relief};
+pub(super) use ground::ground_uniforms;
 
 use super::pass::sky::SkyInputs;
 use crate::plan::Lighting;
