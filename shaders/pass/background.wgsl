@@ -178,11 +178,16 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   }
   let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
 #if GROUND
-  let hit = ground_hit(view.camera.eye, dir);
+  var eye = view.camera.eye;
+#if TERRAIN
+  // An eye inside a hill sees from above it.
+  eye.y = max(eye.y, ground_height(vec2f(0.0)) + 2.0);
+#endif
+  let hit = ground_hit(eye, dir);
   var light: vec3f;
   if (hit >= 0.0) {
     let ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, hit);
-    light = ground_light(view.camera.eye + dir * hit, hit) * ahead.transmittance + ahead.light;
+    light = ground_light(eye + dir * hit, hit) * ahead.transmittance + ahead.light;
   } else {
     light = sky_with_lights(dir);
   }

@@ -140,12 +140,15 @@ fn media_at(p: vec3f, distance_m: f32, reading: Reading) -> Media {
 
 var<private> steps_left: u32;
 
+// Count of clear steps of a ray that has not met cloud yet.
+const FRESH_START: u32 = 100000u;
+
 // One stretch of the ray.
 fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
   var seen = seen_before;
   var t = segment.x + jitter * (scene.step_m + scene.step_growth * segment.x);
   // Short steps since the last cloud; long ones are allowed after a few.
-  var clear_steps = 1000u;
+  var clear_steps = FRESH_START;
   while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
     steps_left -= 1u;
 #if COUNT
@@ -156,9 +159,9 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     let level = max(0.0, log2(max(step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
     let media = media_at(origin + dir * t, t, Reading(level, fade < 1.0, fade));
     if (media.extinction <= 0.0) {
-      clear_steps = min(clear_steps + 1u, select(999u, 1000u, clear_steps == 1000u));
+      clear_steps += 1u;
       t += step * select(1.0, scene.empty_stride, clear_steps > 4u);
-    } else if (clear_steps > 4u && clear_steps < 1000u && scene.empty_stride > 1.0) {
+    } else if (clear_steps > 4u && clear_steps < FRESH_START && scene.empty_stride > 1.0) {
       // Entered by a long step: go back to where the first short one would have been.
       clear_steps = 0u;
       t -= step * (scene.empty_stride - 1.0);

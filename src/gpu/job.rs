@@ -126,7 +126,7 @@ pub fn submit(gpu: &Gpu, jobs: &[Job]) {
 fn run_serialised(gpu: &Gpu, jobs: &[Job]) -> Result<Vec<PassTime>, GpuError> {
     let mut times = Vec::new();
     for job in jobs {
-        let start = Instant::now(); eprintln!("JOB {}", job.pass);
+        let start = Instant::now();
         submit(gpu, std::slice::from_ref(job));
         gpu.wait()?;
         add(&mut times, job.pass, Some(start.elapsed().as_secs_f64() * 1e3));

@@ -1,6 +1,6 @@
 //! The ground as shaders take it.
 
-use glam::Vec4;
+use glam::{Vec2, Vec4};
 
 use super::camera::Eye;
 use super::other::GroundUniforms;
@@ -40,9 +40,12 @@ pub(crate) fn ground_uniforms(scene: &Scene, lighting: &Lighting, eye: &Eye, sha
             (0.5 / SHADOW_REACH_M) as f32,
             0.0,
         ),
+        plain_at: Vec2::new(-eye.position.x as f32, -eye.position.z as f32),
         mean_shadow: 1.0 - 0.55 * scene.weather.coverage,
         shadow_strength: ground.cloud_shadows,
         reach_m: 90_000.0,
         pad0: 0.0,
+        pad1: 0.0,
+        pad2: 0.0,
     }
 }

@@ -1,6 +1,6 @@
 //! The structs of the smaller passes.
 
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 
 use crate::gpu_struct;
 
@@ -27,6 +27,8 @@ gpu_struct! {
         pub tile_from_world: Vec4,
         /// Coordinates on the shadow map: offset in xy, maps per metre in z.
         pub shadow_from_world: Vec4,
+        /// Where the plain at the world's origin lies.
+        pub plain_at: Vec2,
         /// Light that passes the clouds on average, beyond the map.
         pub mean_shadow: f32,
         /// The artist's strength of cloud shadows.
@@ -35,6 +37,10 @@ gpu_struct! {
         pub reach_m: f32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad0: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: f32,
     }
 
     /// What a generated weather map is made of.
