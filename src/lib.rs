@@ -1,6 +1,11 @@
 //! An instrument for observing clouds.
+pub mod app;
+pub mod cli;
+pub mod export;
+pub mod files;
 pub mod gpu;
-pub mod render;
-pub mod shader;
+pub mod lab;
 pub mod plan;
+pub mod render;
 pub mod scene;
+pub mod shader;
