@@ -6,6 +6,7 @@ pub mod files;
 pub mod gpu;
 pub mod lab;
 pub mod plan;
+pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod shader;
