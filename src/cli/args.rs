@@ -6,7 +6,7 @@ use anyhow::{Context as _, Result};
 
 use super::error::Usage;
 use crate::files::{Sky, load_quality};
-use crate::scene::edit::{self, EditError};
+use crate::scene::edit;
 use crate::scene::param::Choice as _;
 use crate::scene::{Quality, QualityLevel, Scene};
 
@@ -51,28 +51,6 @@ pub(super) fn set_camera(scene: &mut Scene, text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Applies `key=value` assignments; keys that begin with `quality.` go to the quality.
-pub(super) fn apply_sets(sets: &[String], scene: &mut Scene, quality: &mut Quality) -> Result<()> {
-    for assignment in sets {
-        let result = edit::split(assignment).and_then(|(key, value)| match key.strip_prefix("quality.") {
-            Some(key) => edit::set(quality, key, value).map_err(with_quality_prefix),
-            None => edit::set(scene, key, value),
-        });
-        result.with_context(|| format!("--set {assignment:?} cannot be used"))?;
-    }
-    match scene.problems().into_iter().next() {
-        Some(problem) => Err(Usage(problem).into()),
-        None => Ok(()),
-    }
-}
-
-fn with_quality_prefix(error: EditError) -> EditError {
-    match error {
-        EditError::UnknownKey { key, hint } => EditError::UnknownKey { key: format!("quality.{key}"), hint },
-        other => other,
-    }
-}
-
 /// The quality settings: a level by name or a file if given, else those of the sky, else the level for stills.
 pub(super) fn quality(given: Option<&str>, sky: &Sky) -> Result<Quality> {
     let Some(given) = given else {
@@ -111,15 +89,5 @@ mod tests {
         for wrong in ["1,2,3", "1,2,3,4,x", "1,2,3,4,95", "1,2,3,4,NaN"] {
             assert!(set_camera(&mut scene, wrong).is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn sets_reach_scene_and_quality() {
-        let (mut scene, mut quality) = (Scene::default(), Quality::default());
-        let sets = ["weather.coverage=0.9".to_owned(), "quality.view_steps = 99".to_owned()];
-        apply_sets(&sets, &mut scene, &mut quality).expect("both exist");
-        assert_eq!((scene.weather.coverage, quality.view_steps), (0.9, 99));
-        let upside_down = ["layers.0.top_m=100".to_owned()];
-        assert!(apply_sets(&upside_down, &mut scene, &mut quality).is_err(), "the rules between fields hold here too");
     }
 }

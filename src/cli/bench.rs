@@ -16,6 +16,7 @@ use crate::lab::table::{Cell, Table};
 use crate::lab::thesis::{self, Settings};
 use crate::render::Renderer;
 use crate::scene::builtin::BUILTINS;
+use crate::scene::edit;
 use crate::scene::{Quality, UpdateFraction};
 
 #[derive(Debug, Args)]
@@ -105,7 +106,7 @@ fn cases(args: &BenchArgs) -> Result<Vec<Case>> {
                 quality.update = UpdateFraction::Sixteenth;
             }
             let mut scene = sky.preset.scene.clone();
-            args::apply_sets(&args.edits.sets, &mut scene, &mut quality)?;
+            edit::apply(&args.edits.sets, &mut scene, &mut quality)?;
             for size in &args.size {
                 let (scene, quality) = (scene.clone(), quality.clone());
                 cases.push(Case { name: title(&sky), scene, quality, size: *size });

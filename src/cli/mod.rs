@@ -53,7 +53,7 @@ enum Command {
 /// Changes to the sky.
 #[derive(Clone, Debug, Default, Args)]
 struct Edits {
-    /// Sets a parameter, such as weather.coverage=0.6 or quality.light_steps=8. May be given several times.
+    /// Sets a parameter, such as `weather.coverage=0.6` or `quality.light_steps=8`. May be given several times.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     sets: Vec<String>,
 }

@@ -17,6 +17,7 @@ use crate::export::pattern::{FramePattern, parse_frame_range};
 use crate::files::{self, About, save_exr, save_png};
 use crate::gpu::Gpu;
 use crate::render::Renderer;
+use crate::scene::edit;
 use crate::scene::{Frame, Output, Preset, Projection, Quality, UpdateFraction};
 
 #[derive(Debug, Args)]
@@ -26,7 +27,7 @@ pub(super) struct RenderArgs {
     /// File to write, .png or .exr; `####` in its name stands for the frame number.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// Width and height in pixels: WIDTHxHEIGHT, hd or 4k.
+    /// Width and height in pixels, such as `640x360`, `hd` or `4k`.
     #[arg(long, value_parser = args::size, default_value = "1920x1080")]
     size: [u32; 2],
     /// How directions map onto the picture; as the sky says if not given.
@@ -167,7 +168,7 @@ impl Job {
         // `--size` is the size of the file, unless `--set` says otherwise.
         quality.resolution_scale = 1.0;
         let mut preset = sky.preset;
-        args::apply_sets(&args.edits.sets, &mut preset.scene, &mut quality)?;
+        edit::apply(&args.edits.sets, &mut preset.scene, &mut quality)?;
         if let Some(camera) = &args.camera {
             args::set_camera(&mut preset.scene, camera)?;
         }

@@ -32,6 +32,7 @@ pub struct Flight {
 }
 
 /// The camera of a frame of the flight: forwards, swaying from side to side, climbing a little.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
 pub fn camera_at(start: &Camera, time_secs: f64) -> Camera {
     let phase = time_secs / TURN_SECS * std::f64::consts::TAU;
     let heading = f64::from(start.heading_deg).to_radians();

@@ -1,6 +1,6 @@
 //! Table 4.1 of Koblížek's thesis (2019), measured again.
 //!
-//! The thesis renders a 2048×1024 texture of the upper hemisphere on a GeForce GT 755M, one sixteenth a frame. Here a
+//! The thesis renders a 2048×1024 texture of the upper hemisphere on a graphics card of 2013 (GT 755M), one sixteenth a frame. Here a
 //! whole sphere of 2048×2048 has that texture as its upper half; below the horizon the ground ends every ray at once,
 //! so that a frame marches the same 131,072 rays. Milliseconds of different machines do not compare; what does is how
 //! cost grows with coverage and from type to type, so each table is also divided by its first row.

@@ -141,3 +141,29 @@ fn files_of_version_1_load() {
     expected.scene.sun.elevation_deg = 7.5;
     assert_eq!(load("summit.ron"), expected);
 }
+
+#[test]
+fn damaged_text_is_refused_without_a_panic() {
+    let text = super::super::builtin::BUILTINS[0].ron;
+    for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
+        let refused = Preset::from_ron(&text[..end], "x.ron");
+        assert!(refused.is_err() || text[end..].trim().is_empty(), "cut at {end}");
+    }
+    for at in 0..text.len() {
+        for other in [b'(', b')', b'"', b',', b'9', b'r', b'/', b'\n', b'-'] {
+            let mut bytes = text.as_bytes().to_vec();
+            bytes[at] = other;
+            if let Ok(text) = std::str::from_utf8(&bytes) {
+                // Either outcome is right, as long as there is one.
+                let _ = Preset::from_ron(text, "x.ron");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_text_comes_back() {
+    let text = "\u{1}\u{7f}\u{85}\u{2028}\u{feff}\\'\"\n\r\t\0 雲 {}() // /* */";
+    let preset = Preset { description: text.to_owned(), tags: vec![text.to_owned()], ..Preset::default() };
+    assert_eq!(Preset::from_ron(&preset.to_ron(), "x.ron"), Ok(preset));
+}
