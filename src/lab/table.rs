@@ -25,8 +25,8 @@ impl Cell {
     fn shown(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
-            Self::Number(Some(number), digits) => format!("{number:.digits$}"),
-            Self::Number(None, _) => "n/a".to_owned(),
+            Self::Number(Some(number), digits) if number.is_finite() => format!("{number:.digits$}"),
+            Self::Number(..) => "n/a".to_owned(),
         }
     }
 }
