@@ -1,6 +1,10 @@
-//! Nephoscope: a desktop studio for volumetric skies.
+//! An instrument for observing clouds.
+pub mod app;
+pub mod cli;
 pub mod export;
+pub mod files;
 pub mod gpu;
+pub mod lab;
 pub mod plan;
 pub mod reference;
 pub mod render;

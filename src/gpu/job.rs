@@ -147,8 +147,7 @@ fn run_with_timestamps(gpu: &Gpu, jobs: &[Job]) -> Result<Vec<PassTime>, GpuErro
         });
         let size = u64::from(count) * 8;
         let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        let descriptor =
-            wgpu::BufferDescriptor { label: Some("pass times"), size, usage, mapped_at_creation: false };
+        let descriptor = wgpu::BufferDescriptor { label: Some("pass times"), size, usage, mapped_at_creation: false };
         let resolved = gpu.device.create_buffer(&descriptor);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         for (index, job) in (0..count).step_by(2).zip(jobs) {
