@@ -23,13 +23,13 @@ pub struct LinearImage {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Rays marched.
-    pub rays: u32,
+    pub rays: u64,
     /// Steps along them.
-    pub view_steps: u32,
+    pub view_steps: u64,
     /// Steps towards the light.
-    pub light_steps: u32,
+    pub light_steps: u64,
     /// Texture reads of the density field.
-    pub texture_reads: u32,
+    pub texture_reads: u64,
 }
 
 impl Renderer {
@@ -94,7 +94,7 @@ impl Renderer {
         job::run(&self.gpu, &jobs)?;
         let _: Option<FrameReport> = self.complete();
         let bytes = readback::buffer(&self.gpu, &counters)?;
-        let counted: Vec<u32> = bytemuck::cast_slice(&bytes).to_vec();
+        let counted: Vec<u64> = bytemuck::cast_slice::<u8, u32>(&bytes).iter().map(|count| u64::from(*count)).collect();
         Ok(Counts { rays: counted[0], view_steps: counted[1], light_steps: counted[2], texture_reads: counted[3] })
     }
 }
