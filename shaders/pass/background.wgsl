@@ -147,13 +147,14 @@ fn ground_albedo(p: vec3f, normal: vec3f, distance_m: f32) -> vec3f {
 }
 
 #if SHADOW
-// Share of the key light that cloud lets through to a place on the ground.
-fn light_through_cloud(p: vec3f) -> f32 {
+// Share of the key light that cloud lets through to a place on the ground: straight, and scattered downwards.
+fn light_through_cloud(p: vec3f) -> vec2f {
   let foot = p - ground.towards_light * (p.y / max(ground.towards_light.y, 0.05));
   let uv = foot.xz * ground.shadow_from_world.z + ground.shadow_from_world.xy;
   let edge = clamp((0.5 - max(abs(uv.x - 0.5), abs(uv.y - 0.5))) * 8.0, 0.0, 1.0);
-  let mapped = textureSampleLevel(cloud_shadow, linear_clamp, uv, 0.0).x;
-  return mix(1.0, mix(ground.mean_shadow, mapped, edge), ground.shadow_strength);
+  let mapped = textureSampleLevel(cloud_shadow, linear_clamp, uv, 0.0).xy;
+  let beyond = vec2f(ground.mean_shadow, 0.4 * (1.0 - ground.mean_shadow));
+  return mix(vec2f(1.0, 0.0), mix(beyond, mapped, edge), ground.shadow_strength);
 }
 #endif
 
@@ -162,11 +163,14 @@ fn ground_light(p: vec3f, distance_m: f32) -> vec3f {
   let altitude = max(altitude_at(p, ground.planet_radius_m), 0.0);
   let cosine = light_cos_zenith(p, ground.towards_light, ground.planet_radius_m);
   var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
+  var scattered = vec3f(0.0);
 #if SHADOW
-  key *= light_through_cloud(p);
+  let through = light_through_cloud(p);
+  scattered = key * through.y * max(ground.towards_light.y, 0.0) / PI;
+  key *= through.x;
 #endif
   let sky = textureLoad(sky_ambient, vec2u(3u, 0u), 0).rgb * (0.6 + 0.4 * normal.y);
-  return ground_albedo(p, normal, distance_m) * (key * max(dot(normal, ground.towards_light), 0.0) / PI + sky);
+  return ground_albedo(p, normal, distance_m) * (key * max(dot(normal, ground.towards_light), 0.0) / PI + scattered + sky);
 }
 #endif
 

@@ -43,7 +43,7 @@ impl FrameBuffers {
             view: uniform("view", bytemuck::bytes_of(view)),
             scene: uniform("scene", bytemuck::bytes_of(scene)),
             ground: uniform("ground", bytemuck::bytes_of(ground)),
-            display: uniform("display", &[0; 16]),
+            display: uniform("display", &[0; 32]),
             shafts: None,
         }
     }

@@ -51,6 +51,8 @@ params! {
         step_m: f32 = 34.0, 1.0..=1000.0, Metres, logarithmic;
         /// Growth of the step with distance: metres more per metre.
         step_growth: f32 = 0.006, 0.0..=0.1, None;
+        /// Optical depth of a step inside dense cloud; the step is never longer than its length by distance.
+        step_depth: f32 = 0.8, 0.02..=10_000.0, None, logarithmic;
         /// Length of a step in clear air relative to one in cloud.
         empty_stride: f32 = 3.0, 1.0..=8.0, None;
         /// Greatest distance at which clouds are drawn.
@@ -92,6 +94,7 @@ impl Quality {
                 view_steps: 96,
                 step_m: 60.0,
                 step_growth: 0.012,
+                step_depth: 1.2,
                 light_steps: 4,
                 light_detail_steps: 0,
                 octaves: 4,
@@ -104,6 +107,7 @@ impl Quality {
                 view_steps: 400,
                 step_m: 18.0,
                 step_growth: 0.0025,
+                step_depth: 0.5,
                 empty_stride: 2.0,
                 light_steps: 9,
                 light_growth: 1.6,
@@ -119,6 +123,7 @@ impl Quality {
                 view_steps: 1000,
                 step_m: 10.0,
                 step_growth: 0.0014,
+                step_depth: 0.25,
                 empty_stride: 1.5,
                 light_steps: 12,
                 light_growth: 1.45,
