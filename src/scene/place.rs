@@ -90,7 +90,7 @@ params! {
 choices! {
     /// How light becomes display colour.
     pub enum ToneMap {
-        /// AgX, as Blender's default: soft, hue-keeping.
+        /// `AgX`, as Blender's default: soft, hue-keeping.
         Agx ("AgX"),
         /// Khronos PBR Neutral: colours as given, highlights compressed.
         Neutral ("Khronos Neutral"),

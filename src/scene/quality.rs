@@ -141,6 +141,7 @@ impl Quality {
     }
 
     /// The lengths of all light steps add up to [`Self::light_reach_m`]; this is the first of them.
+    #[allow(clippy::cast_possible_truncation, reason = "parameters are f32; only the sum needs more")]
     pub fn first_light_step_m(&self) -> f32 {
         let steps = f64::from(self.light_steps);
         let growth = f64::from(self.light_growth);

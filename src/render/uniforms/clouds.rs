@@ -33,9 +33,7 @@ fn map_from_world(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
     match weather.edge {
         MapEdge::Repeat => Vec4::new(wrapped(tiles.x), wrapped(tiles.y), per_metre, 0.0),
         // A map that ends lies with its middle on the world's origin.
-        MapEdge::Clamp | MapEdge::Clear => {
-            Vec4::new((tiles.x + 0.5) as f32, (tiles.y + 0.5) as f32, per_metre, 0.0)
-        }
+        MapEdge::Clamp | MapEdge::Clear => Vec4::new((tiles.x + 0.5) as f32, (tiles.y + 0.5) as f32, per_metre, 0.0),
     }
 }
 

@@ -1,4 +1,8 @@
 //! What shaders are told, and the only place where units are converted.
+#![allow(
+    clippy::cast_possible_truncation,
+    reason = "places and times are kept in f64 up to here, and shaders compute in f32"
+)]
 
 pub mod air;
 mod camera;
