@@ -4,12 +4,19 @@
 //! blows from, azimuths run clockwise from north. Angles are degrees here, where people see them, and radians from
 //! [`crate::render::uniforms`] on.
 
+pub mod bounds;
+pub mod builtin;
+pub mod edit;
 mod frame;
 mod layer;
 mod light;
+pub mod nearest;
 pub mod param;
 mod place;
+pub mod preset;
 mod quality;
+pub mod random;
+pub mod reference_docs;
 mod sun_position;
 mod weather;
 
@@ -17,6 +24,7 @@ pub use frame::{Frame, Output};
 pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
 pub use light::{Air, Moon, Scattering, Sun, SunPlacement, Sunshafts};
 pub use place::{Camera, Display, Domain, DomainKind, Ground, Projection, ToneMap};
+pub use preset::{PRESET_VERSION, Preset, PresetError, quality_from_ron, quality_to_ron};
 pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
 pub use weather::{MapEdge, MapLayer, MapSource, Weather, Wind};
 

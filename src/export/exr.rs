@@ -1,0 +1,544 @@
+//! Scene-linear pictures as OpenEXR, with everything needed to make them again.
+//!
+//! One unnamed scan-line part with the channels `R G B A` (associated alpha) and, if given, `Z`. Colours are linear
+//! Rec.709, named by the attribute `colorInteropID` (ASWF Color Interop Forum, "Identifying the Color Space of
+//! OpenEXR Files", version 1.0.0). What is Nephoscope's own has the prefix `nephoscope:`.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use ::exr::prelude as exrs;
+use ::exr::prelude::{AttributeValue, Text, WritableImage as _};
+use half::f16;
+
+use super::atomic::write_atomically;
+use super::{ExportError, sha256_hex};
+
+/// Prefix of the attributes that only Nephoscope understands.
+pub const PREFIX: &str = "nephoscope:";
+/// The whole preset, RON text.
+pub const PRESET: &str = "nephoscope:preset";
+/// Version of the preset format, an integer.
+pub const PRESET_VERSION: &str = "nephoscope:presetVersion";
+/// The quality settings of the render, RON text.
+pub const QUALITY: &str = "nephoscope:quality";
+/// Candela per square metre that a channel value of 1 stands for.
+pub const LUMINANCE_SCALE: &str = "nephoscope:candelaPerSquareMetrePerUnit";
+/// Prefix of an embedded file's bytes; its name follows.
+pub const FILE_PREFIX: &str = "nephoscope:file:";
+/// Prefix of an embedded file's SHA-256 sum; its name follows.
+pub const SHA256_PREFIX: &str = "nephoscope:sha256:";
+/// Larger user files are only named, with their sum: an image should stay an image.
+pub const MAX_EMBEDDED_FILE_BYTES: usize = 8 << 20;
+
+/// OpenEXR's limit for the name of an attribute, bytes.
+const MAX_NAME_BYTES: usize = 255;
+/// The largest finite half-precision number.
+const HALF_MAX: f32 = 65504.0;
+
+/// Scene-linear pixels, rows from the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FloatImage {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Linear Rec.709 with associated alpha: colour is already multiplied by coverage, and may exceed alpha.
+    pub rgba: Vec<[f32; 4]>,
+    /// Camera-space distance to the plane of each pixel, m; always stored as 32-bit float in channel `Z`.
+    /// Where nothing is covered, put a large finite number.
+    pub depth: Option<Vec<f32>>,
+    /// Where these pixels lie if they are only a part of the frame.
+    pub crop: Option<Crop>,
+}
+
+/// Position of a rendered region (the data window) in its full frame (the display window), pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crop {
+    /// Left edge of the region.
+    pub x: u32,
+    /// Top edge of the region.
+    pub y: u32,
+    /// Width of the full frame.
+    pub full_width: u32,
+    /// Height of the full frame.
+    pub full_height: u32,
+}
+
+/// A user's file (a weather map, say) carried inside an EXR so that the sky can be made again elsewhere.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EmbeddedFile {
+    /// The name by which the preset calls it; at most 200 bytes.
+    pub name: String,
+    /// SHA-256 of the contents, 64 lower-case hexadecimal digits.
+    pub sha256: String,
+    /// The contents; `None` if they were too large to embed (see [`MAX_EMBEDDED_FILE_BYTES`]).
+    pub bytes: Option<Vec<u8>>,
+}
+
+impl EmbeddedFile {
+    /// A file with the sum of its contents, which are dropped if they are larger than [`MAX_EMBEDDED_FILE_BYTES`].
+    #[must_use]
+    pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Self {
+        let sha256 = sha256_hex(&bytes);
+        Self { name: name.into(), sha256, bytes: Some(bytes).filter(|bytes| bytes.len() <= MAX_EMBEDDED_FILE_BYTES) }
+    }
+}
+
+/// What is written beside the pixels. Empty strings are left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExrMetadata {
+    /// Program and version, attribute `software`.
+    pub software: String,
+    /// Free text, attribute `comments`.
+    pub comments: String,
+    /// Local time as `YYYY:MM:DD hh:mm:ss`, attribute `capDate`.
+    pub cap_date: String,
+    /// The whole preset as RON; kept byte for byte.
+    pub preset_ron: String,
+    /// Version of the preset format; written only with a preset.
+    pub preset_version: u32,
+    /// The quality settings as RON.
+    pub quality_ron: String,
+    /// Candela per square metre for a channel value of 1; finite and above 0.
+    pub candela_per_unit: f32,
+    /// World to camera, rows of a matrix that multiplies row vectors from the right (translation in the last row);
+    /// the camera looks along +z, with +x to the right and +y up (OpenEXR, `ImfStandardAttributes.h`).
+    pub world_to_camera: Option<[[f32; 4]; 4]>,
+    /// World to normalised device coordinates, same convention; (0, 0) is the top left, (1, 1) the bottom right.
+    pub world_to_ndc: Option<[[f32; 4]; 4]>,
+    /// Further text entries, (name, value); the prefix `nephoscope:` is added to each name.
+    pub extra: Vec<(String, String)>,
+    /// Files that the preset names.
+    pub files: Vec<EmbeddedFile>,
+}
+
+impl Default for ExrMetadata {
+    fn default() -> Self {
+        Self {
+            software: concat!("nephoscope ", env!("CARGO_PKG_VERSION")).to_owned(),
+            comments: String::new(),
+            cap_date: String::new(),
+            preset_ron: String::new(),
+            preset_version: 0,
+            quality_ron: String::new(),
+            candela_per_unit: 1.0,
+            world_to_camera: None,
+            world_to_ndc: None,
+            extra: Vec::new(),
+            files: Vec::new(),
+        }
+    }
+}
+
+/// Bits per colour sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExrDepth {
+    /// Half, unless a value is beyond its range of ±65504 (an unclipped sun is).
+    #[default]
+    Auto,
+    /// 16-bit half.
+    Half,
+    /// 32-bit float.
+    Float,
+}
+
+/// Lossless codecs. ZIP is the smallest for clean skies; PIZ wins only on grain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ExrCompression {
+    /// Deflate over blocks of 16 lines.
+    #[default]
+    Zip,
+    /// Deflate line by line, quicker to read for compositors that go by lines.
+    Zips,
+    /// Wavelets over blocks of 32 lines.
+    Piz,
+    /// As it is.
+    None,
+}
+
+impl From<ExrCompression> for exrs::Compression {
+    fn from(compression: ExrCompression) -> Self {
+        match compression {
+            ExrCompression::Zip => Self::ZIP16,
+            ExrCompression::Zips => Self::ZIP1,
+            ExrCompression::Piz => Self::PIZ,
+            ExrCompression::None => Self::Uncompressed,
+        }
+    }
+}
+
+/// How the pixels are stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExrOptions {
+    /// Bits per colour sample.
+    pub depth: ExrDepth,
+    /// The codec.
+    pub compression: ExrCompression,
+}
+
+/// Writes an EXR atomically and returns the depth that was chosen, [`ExrDepth::Half`] or [`ExrDepth::Float`].
+///
+/// # Errors
+/// If array lengths and sizes disagree, if any value is NaN or infinite, if half was demanded for a value beyond its
+/// range, if a metadata entry cannot be stored, and for everything [`write_atomically`] reports.
+pub fn write_exr(
+    path: &Path,
+    image: &FloatImage,
+    metadata: &ExrMetadata,
+    options: ExrOptions,
+) -> Result<ExrDepth, ExportError> {
+    check_sizes(path, image)?;
+    check_finite(path, image)?;
+    let depth = resolve_depth(path, image, options.depth)?;
+    let layer = exrs::Layer {
+        channel_data: channels(image, depth),
+        attributes: layer_attributes(path, image, metadata)?,
+        size: exrs::Vec2(image.width as usize, image.height as usize),
+        encoding: exrs::Encoding {
+            compression: options.compression.into(),
+            blocks: exrs::Blocks::ScanLines,
+            line_order: exrs::LineOrder::Increasing,
+        },
+    };
+    let full = image.crop.map_or([image.width, image.height], |crop| [crop.full_width, crop.full_height]);
+    let attributes = exrs::ImageAttributes::with_size((full[0] as usize, full[1] as usize));
+    let file = exrs::Image { attributes, layer_data: layer };
+    write_atomically(path, |writer| {
+        file.write().to_buffered(writer).map_err(|error| match error {
+            exrs::Error::Io(cause) => ExportError::writing(path, cause),
+            other => ExportError::Encode { path: path.to_owned(), reason: other.to_string() },
+        })
+    })?;
+    Ok(depth)
+}
+
+fn check_sizes(path: &Path, image: &FloatImage) -> Result<(), ExportError> {
+    let bad = |reason| Err(ExportError::BadImage { path: path.to_owned(), reason });
+    let (width, height) = (image.width, image.height);
+    let count = width as usize * height as usize;
+    if count == 0 {
+        return bad(format!("{width} x {height} is no picture"));
+    }
+    if image.rgba.len() != count || image.depth.as_ref().is_some_and(|depth| depth.len() != count) {
+        return bad(format!("the pixel arrays do not hold {width} x {height} values"));
+    }
+    let crop = image.crop.unwrap_or(Crop { x: 0, y: 0, full_width: width, full_height: height });
+    let fits = |start: u32, size: u32, full: u32| start.checked_add(size).is_some_and(|end| end <= full);
+    if !fits(crop.x, width, crop.full_width) || !fits(crop.y, height, crop.full_height) {
+        return bad(format!("the region {width} x {height} leaves its frame: {crop:?}"));
+    }
+    // OpenEXR windows are signed; a quarter of that range keeps every sum of two coordinates inside it.
+    if crop.full_width.max(crop.full_height) > 1 << 29 {
+        return bad(format!("a frame of {} x {} is too large", crop.full_width, crop.full_height));
+    }
+    Ok(())
+}
+
+/// How many pixels are not finite, with the index and the channel of the first.
+pub(super) fn find_non_finite(rgba: &[[f32; 4]], depth: Option<&[f32]>) -> Option<(usize, usize, char)> {
+    let bad_channel = |index: usize| {
+        let z = depth.map_or(0.0, |depth| depth[index]);
+        let [r, g, b, a] = rgba[index];
+        [('R', r), ('G', g), ('B', b), ('A', a), ('Z', z)].into_iter().find(|(_, value)| !value.is_finite())
+    };
+    let mut bad = (0..rgba.len()).filter_map(|index| Some((index, bad_channel(index)?.0)));
+    let (first, channel) = bad.next()?;
+    Some((1 + bad.count(), first, channel))
+}
+
+/// Column and row of a pixel index.
+pub(super) fn position(index: usize, width: u32) -> (u32, u32) {
+    let width = width.max(1) as usize;
+    let coordinate = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
+    (coordinate(index % width), coordinate(index / width))
+}
+
+fn check_finite(path: &Path, image: &FloatImage) -> Result<(), ExportError> {
+    match find_non_finite(&image.rgba, image.depth.as_deref()) {
+        None => Ok(()),
+        Some((count, first, channel)) => {
+            let (x, y) = position(first, image.width);
+            Err(ExportError::NonFinite { path: path.to_owned(), count, x, y, channel })
+        }
+    }
+}
+
+fn resolve_depth(path: &Path, image: &FloatImage, depth: ExrDepth) -> Result<ExrDepth, ExportError> {
+    let too_large = |pixel: &[f32; 4]| pixel.iter().copied().find(|value| value.abs() > HALF_MAX);
+    let first = image.rgba.iter().enumerate().find_map(|(index, pixel)| Some((index, too_large(pixel)?)));
+    match (depth, first) {
+        (ExrDepth::Float, _) | (ExrDepth::Auto, Some(_)) => Ok(ExrDepth::Float),
+        (_, None) => Ok(ExrDepth::Half),
+        (ExrDepth::Half, Some((index, value))) => {
+            let (x, y) = position(index, image.width);
+            Err(ExportError::BeyondHalf { path: path.to_owned(), value, x, y })
+        }
+    }
+}
+
+fn channels(image: &FloatImage, depth: ExrDepth) -> exrs::AnyChannels<exrs::FlatSamples> {
+    let colour = |name: &str, index: usize| {
+        let values = image.rgba.iter().map(|pixel| pixel[index]);
+        let samples = match depth {
+            ExrDepth::Half => exrs::FlatSamples::F16(values.map(f16::from_f32).collect()),
+            _ => exrs::FlatSamples::F32(values.collect()),
+        };
+        exrs::AnyChannel::new(name, samples)
+    };
+    let mut list = exrs::SmallVec::from_vec(vec![colour("R", 0), colour("G", 1), colour("B", 2), colour("A", 3)]);
+    if let Some(depth) = &image.depth {
+        // Half would place a cloud at 20 km on steps of 16 m, hence always 32 bits.
+        list.push(exrs::AnyChannel::new("Z", exrs::FlatSamples::F32(depth.clone())));
+    }
+    exrs::AnyChannels::sort(list)
+}
+
+/// UTF-8 as it is. OpenEXR does not name an encoding for strings; `Text::from` would panic beyond Latin-1.
+fn text(value: &str) -> Text {
+    Text::from_bytes_unchecked(exrs::SmallVec::from_slice(value.as_bytes()))
+}
+
+/// Attributes that are not in the standard's list, refusing names that cannot be stored or come twice.
+struct CustomAttributes<'a> {
+    path: &'a Path,
+    map: HashMap<Text, AttributeValue>,
+}
+
+impl CustomAttributes<'_> {
+    fn refuse(&self, name: &str, reason: impl Into<String>) -> ExportError {
+        ExportError::BadMetadata { path: self.path.to_owned(), name: name.to_owned(), reason: reason.into() }
+    }
+
+    fn insert(&mut self, name: &str, value: AttributeValue) -> Result<(), ExportError> {
+        if name.len() > MAX_NAME_BYTES || name.contains('\0') || name.ends_with(':') {
+            return Err(self.refuse(name, format!("needs a name of 1 to {MAX_NAME_BYTES} bytes without NUL")));
+        }
+        match self.map.insert(text(name), value) {
+            None => Ok(()),
+            Some(_) => Err(self.refuse(name, "is given twice")),
+        }
+    }
+
+    fn insert_text(&mut self, name: &str, value: &str) -> Result<(), ExportError> {
+        self.insert(name, AttributeValue::Text(text(value)))
+    }
+
+    fn insert_file(&mut self, file: &EmbeddedFile) -> Result<(), ExportError> {
+        self.insert_text(&format!("{SHA256_PREFIX}{}", file.name), &file.sha256)?;
+        let Some(bytes) = file.bytes.as_ref().filter(|bytes| bytes.len() <= MAX_EMBEDDED_FILE_BYTES) else {
+            return Ok(());
+        };
+        let bytes = exrs::SmallVec::from_slice(bytes);
+        let value = AttributeValue::Bytes { type_hint: text("application/octet-stream"), bytes };
+        self.insert(&format!("{FILE_PREFIX}{}", file.name), value)
+    }
+}
+
+fn layer_attributes(
+    path: &Path,
+    image: &FloatImage,
+    metadata: &ExrMetadata,
+) -> Result<exrs::LayerAttributes, ExportError> {
+    let optional = |value: &str| if value.is_empty() { None } else { Some(text(value)) };
+    let position = |value: u32| i32::try_from(value).unwrap_or(i32::MAX);
+    Ok(exrs::LayerAttributes {
+        // A name would make viewers such as tev prefix every channel with it.
+        layer_name: None,
+        layer_position: image.crop.map_or(exrs::Vec2(0, 0), |crop| exrs::Vec2(position(crop.x), position(crop.y))),
+        software_name: optional(&metadata.software),
+        comments: optional(&metadata.comments),
+        capture_date: optional(&metadata.cap_date),
+        world_to_camera: flat_matrix(path, "worldToCamera", metadata.world_to_camera)?,
+        world_to_normalized_device: flat_matrix(path, "worldToNDC", metadata.world_to_ndc)?,
+        other: custom_attributes(path, metadata)?,
+        ..Default::default()
+    })
+}
+
+fn flat_matrix(path: &Path, name: &str, rows: Option<[[f32; 4]; 4]>) -> Result<Option<[f32; 16]>, ExportError> {
+    let Some(rows) = rows else { return Ok(None) };
+    if rows.as_flattened().iter().any(|value| !value.is_finite()) {
+        let (name, reason) = (name.to_owned(), "holds a number that is not finite".to_owned());
+        return Err(ExportError::BadMetadata { path: path.to_owned(), name, reason });
+    }
+    Ok(Some(std::array::from_fn(|index| rows[index / 4][index % 4])))
+}
+
+fn custom_attributes(path: &Path, metadata: &ExrMetadata) -> Result<HashMap<Text, AttributeValue>, ExportError> {
+    let mut custom = CustomAttributes { path, map: HashMap::new() };
+    if !is_cap_date(&metadata.cap_date) {
+        return Err(custom.refuse("capDate", "must look like 2026:11:22 18:30:00"));
+    }
+    if !(metadata.candela_per_unit.is_finite() && metadata.candela_per_unit > 0.0) {
+        return Err(custom.refuse(LUMINANCE_SCALE, "must be finite and above 0"));
+    }
+    custom.insert(LUMINANCE_SCALE, AttributeValue::F32(metadata.candela_per_unit))?;
+    custom.insert_text("colorInteropID", "lin_rec709_scene")?;
+    if !metadata.preset_ron.is_empty() {
+        let version = i32::try_from(metadata.preset_version)
+            .map_err(|_| custom.refuse(PRESET_VERSION, format!("must be at most {}", i32::MAX)))?;
+        custom.insert_text(PRESET, &metadata.preset_ron)?;
+        custom.insert(PRESET_VERSION, AttributeValue::I32(version))?;
+    }
+    if !metadata.quality_ron.is_empty() {
+        custom.insert_text(QUALITY, &metadata.quality_ron)?;
+    }
+    for (name, value) in &metadata.extra {
+        custom.insert_text(&format!("{PREFIX}{name}"), value)?;
+    }
+    for file in &metadata.files {
+        custom.insert_file(file)?;
+    }
+    Ok(custom.map)
+}
+
+/// `YYYY:MM:DD hh:mm:ss` by shape, or nothing.
+fn is_cap_date(date: &str) -> bool {
+    let shape = b"0000:00:00 00:00:00";
+    let fits = |(byte, shape): (u8, &u8)| if *shape == b'0' { byte.is_ascii_digit() } else { byte == *shape };
+    date.is_empty() || (date.len() == shape.len() && date.bytes().zip(shape).all(fits))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::map::read_exr;
+    use super::*;
+
+    /// A small picture with values that half and float treat differently.
+    fn picture() -> FloatImage {
+        let rgba = (0..5 * 3_u8).map(|i| [f32::from(i) / 7.0, 1.0e-6, 60000.0 - f32::from(i), 1.0]).collect();
+        let depth = (0..5 * 3_u8).map(|i| 20000.0 + f32::from(i) / 3.0).collect();
+        FloatImage { width: 5, height: 3, rgba, depth: Some(depth), crop: None }
+    }
+
+    fn write(image: &FloatImage, options: ExrOptions) -> (tempfile::TempDir, Result<ExrDepth, ExportError>) {
+        let folder = tempfile::tempdir().unwrap();
+        let written = write_exr(&folder.path().join("sky.exr"), image, &ExrMetadata::default(), options);
+        (folder, written)
+    }
+
+    #[test]
+    fn floats_come_back_bit_for_bit_with_every_codec() {
+        for compression in [ExrCompression::Zip, ExrCompression::Zips, ExrCompression::Piz, ExrCompression::None] {
+            let (folder, written) = write(&picture(), ExrOptions { depth: ExrDepth::Float, compression });
+            assert_eq!(written.unwrap(), ExrDepth::Float);
+            assert_eq!(read_exr(&folder.path().join("sky.exr")).unwrap(), picture(), "{compression:?}");
+        }
+    }
+
+    #[test]
+    fn half_rounds_colour_and_keeps_depth() {
+        let (folder, written) = write(&picture(), ExrOptions::default());
+        assert_eq!(written.unwrap(), ExrDepth::Half, "everything here fits into half");
+        let back = read_exr(&folder.path().join("sky.exr")).unwrap();
+        let rounded: Vec<_> =
+            picture().rgba.iter().map(|pixel| pixel.map(|value| f16::from_f32(value).to_f32())).collect();
+        assert_eq!(back.rgba, rounded);
+        assert_eq!(back.depth, picture().depth);
+    }
+
+    #[test]
+    fn a_sun_beyond_half_makes_the_file_float() {
+        let mut image = picture();
+        image.rgba[7][1] = -70000.0;
+        assert_eq!(write(&image, ExrOptions::default()).1.unwrap(), ExrDepth::Float);
+        let (folder, forced) = write(&image, ExrOptions { depth: ExrDepth::Half, ..Default::default() });
+        assert!(matches!(forced, Err(ExportError::BeyondHalf { x: 2, y: 1, .. })), "{forced:?}");
+        assert!(!folder.path().join("sky.exr").exists(), "a refused picture must leave no file");
+        image.rgba[7][1] = 65504.0;
+        assert_eq!(write(&image, ExrOptions::default()).1.unwrap(), ExrDepth::Half);
+    }
+
+    #[test]
+    fn pixels_that_are_not_finite_are_refused_and_counted() {
+        let mut image = picture();
+        image.rgba[6][2] = f32::NAN;
+        image.rgba[9] = [f32::INFINITY; 4];
+        let (folder, written) = write(&image, ExrOptions::default());
+        let expected = matches!(written, Err(ExportError::NonFinite { count: 2, x: 1, y: 1, channel: 'B', .. }));
+        assert!(expected, "{written:?}");
+        assert!(!folder.path().join("sky.exr").exists(), "a refused picture must leave no file");
+
+        let mut image = picture();
+        image.depth = Some(vec![f32::INFINITY; 15]);
+        let (_folder, written) = write(&image, ExrOptions::default());
+        assert!(matches!(written, Err(ExportError::NonFinite { count: 15, channel: 'Z', .. })), "{written:?}");
+    }
+
+    #[test]
+    fn a_crop_becomes_the_data_window() {
+        let crop = Some(Crop { x: 10, y: 4, full_width: 32, full_height: 18 });
+        let image = FloatImage { crop, ..picture() };
+        let (folder, written) = write(&image, ExrOptions { depth: ExrDepth::Float, ..Default::default() });
+        written.unwrap();
+        assert_eq!(read_exr(&folder.path().join("sky.exr")).unwrap(), image);
+        let outside = FloatImage { crop: Some(Crop { x: 28, y: 4, full_width: 32, full_height: 18 }), ..picture() };
+        assert!(matches!(write(&outside, ExrOptions::default()).1, Err(ExportError::BadImage { .. })));
+    }
+
+    #[test]
+    fn arrays_of_the_wrong_length_are_refused() {
+        let bad = [
+            FloatImage { width: 4, ..picture() },
+            FloatImage { depth: Some(vec![0.0; 3]), ..picture() },
+            FloatImage { width: 0, rgba: Vec::new(), depth: None, ..picture() },
+        ];
+        for image in bad {
+            assert!(matches!(write(&image, ExrOptions::default()).1, Err(ExportError::BadImage { .. })));
+        }
+    }
+
+    #[test]
+    fn standard_attributes_are_written_where_others_look() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sky.exr");
+        let rows: [[f32; 4]; 4] = std::array::from_fn(|row| std::array::from_fn(|column| (4 * row + column) as f32));
+        let metadata = ExrMetadata {
+            comments: "Föhn".into(),
+            cap_date: "2026:11:22 18:30:00".into(),
+            candela_per_unit: 1234.5,
+            world_to_camera: Some(rows),
+            extra: vec![("adapter".into(), "llvmpipe".into())],
+            ..Default::default()
+        };
+        write_exr(&path, &picture(), &metadata, ExrOptions::default()).unwrap();
+        let header = ::exr::meta::MetaData::read_from_file(&path, true).unwrap().headers.remove(0);
+        let names: Vec<_> = header.channels.list.iter().map(|channel| channel.name.to_string()).collect();
+        assert_eq!(names, ["A", "B", "G", "R", "Z"]);
+        let own = &header.own_attributes;
+        assert_eq!(own.layer_name, None, "a name would prefix the channels in some viewers");
+        assert_eq!(own.software_name, Some(text(&ExrMetadata::default().software)));
+        assert_eq!(own.comments, Some(text("Föhn")));
+        assert_eq!(own.capture_date, Some(text("2026:11:22 18:30:00")));
+        assert_eq!(own.world_to_camera, Some(std::array::from_fn(|index| index as f32)));
+        assert_eq!(own.world_to_normalized_device, None);
+        let custom = |name: &str| own.other.get(name.as_bytes()).cloned();
+        assert_eq!(custom("colorInteropID"), Some(AttributeValue::Text(text("lin_rec709_scene"))));
+        assert_eq!(custom(LUMINANCE_SCALE), Some(AttributeValue::F32(1234.5)));
+        assert_eq!(custom("nephoscope:adapter"), Some(AttributeValue::Text(text("llvmpipe"))));
+        assert_eq!(custom(PRESET), None);
+    }
+
+    #[test]
+    fn metadata_that_cannot_be_stored_is_named() {
+        let twice = vec![("a".to_owned(), String::new()), ("a".to_owned(), String::new())];
+        let mut not_finite = [[0.0; 4]; 4];
+        not_finite[1][2] = f32::NAN;
+        let bad = [
+            (ExrMetadata { cap_date: "22.11.2026".into(), ..Default::default() }, "capDate"),
+            (ExrMetadata { candela_per_unit: 0.0, ..Default::default() }, LUMINANCE_SCALE),
+            (ExrMetadata { extra: twice, ..Default::default() }, "nephoscope:a"),
+            (ExrMetadata { extra: vec![(String::new(), "x".into())], ..Default::default() }, PREFIX),
+            (ExrMetadata { world_to_ndc: Some(not_finite), ..Default::default() }, "worldToNDC"),
+            (ExrMetadata { files: vec![EmbeddedFile::new("", vec![1])], ..Default::default() }, SHA256_PREFIX),
+            (ExrMetadata { preset_ron: "()".into(), preset_version: u32::MAX, ..Default::default() }, PRESET_VERSION),
+        ];
+        let folder = tempfile::tempdir().unwrap();
+        for (metadata, expected) in bad {
+            let written = write_exr(&folder.path().join("sky.exr"), &picture(), &metadata, ExrOptions::default());
+            let Err(ExportError::BadMetadata { name, .. }) = written else { panic!("{expected}: {written:?}") };
+            assert_eq!(name, expected);
+        }
+    }
+}

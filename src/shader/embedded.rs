@@ -1,0 +1,54 @@
+//! Every file of `shaders/`, embedded in the program.
+
+macro_rules! files {
+    ($($path:literal,)*) => {
+        /// Path (relative to `shaders/`) and text of every shader file, sorted by path.
+        pub const FILES: &[(&str, &str)] =
+            &[$(($path, include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $path))),)*];
+    };
+}
+
+files! {
+    "cloud/phase.wgsl",
+    "common/math.wgsl",
+    "common/random.wgsl",
+    "common/shell.wgsl",
+    "noise/curl.wgsl",
+    "noise/fractal.wgsl",
+    "noise/perlin.wgsl",
+    "noise/worley.wgsl",
+    "test/eval_io.wgsl",
+    "test/eval_math.wgsl",
+    "test/eval_noise.wgsl",
+    "test/eval_phase.wgsl",
+    "test/eval_random.wgsl",
+    "test/eval_shell.wgsl",
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::FILES;
+
+    fn collect(folder: &Path, prefix: &str, found: &mut Vec<String>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let entry = entry.unwrap();
+            let name = format!("{prefix}{}", entry.file_name().to_str().unwrap());
+            if entry.file_type().unwrap().is_dir() {
+                collect(&entry.path(), &format!("{name}/"), found);
+            } else {
+                found.push(name);
+            }
+        }
+    }
+
+    #[test]
+    fn the_table_lists_every_file_of_the_folder_in_order() {
+        let mut found = Vec::new();
+        collect(&Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders"), "", &mut found);
+        found.sort();
+        let listed: Vec<&str> = FILES.iter().map(|(path, _)| *path).collect();
+        assert_eq!(listed, found, "list every file of shaders/ in src/shader/embedded.rs, sorted by path");
+    }
+}
