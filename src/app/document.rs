@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::action::Action;
-use crate::scene::preset::Preset;
-use crate::scene::{Camera, Frame, Output, Quality, QualityLevel, SunPlacement};
+
+use crate::scene::{Camera, Frame, Output, Preset, Quality, QualityLevel, SunPlacement};
 
 /// Slowest and fastest that time may run, in seconds of the scene per second of the clock.
 pub const TIME_FACTOR_RANGE: std::ops::RangeInclusive<f64> = 0.0..=10_000.0;

@@ -76,7 +76,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 19] = [
 ];
 
 /// What mice and held keys do, for the sheet.
-pub const GESTURES: [(&str, &str); 9] = [
+pub(super) const GESTURES: [(&str, &str); 9] = [
     ("Right mouse held", "Look around"),
     ("… with W A S D", "Fly forwards, left, back, right"),
     ("… with Q E", "Fly down, up"),
@@ -126,7 +126,16 @@ impl Command {
             Self::Presets => state.show_presets = Some(!state.presets_visible(ui.ctx().content_rect().width())),
             Self::Panel => state.show_panel = !state.show_panel,
             Self::Overlay => state.show_overlay = !state.show_overlay,
-            Self::HideAll => state.hide_all = !state.hide_all,
+            Self::HideAll => {
+                state.hide_all = !state.hide_all;
+                // egui has taken the same key for the next widget.
+                ui.ctx().memory_mut(|memory| {
+                    memory.move_focus(egui::FocusDirection::None);
+                    if let Some(focused) = memory.focused() {
+                        memory.surrender_focus(focused);
+                    }
+                });
+            }
             Self::FullScreen => ask(Request::ToggleFullScreen),
             Self::Theme => ui.ctx().set_theme(super::other(ui.ctx().theme())),
             Self::Shortcuts => {
@@ -146,12 +155,13 @@ impl Command {
 }
 
 /// Runs the commands whose keys were pressed since the last frame.
-pub fn take(ui: &mut Ui, state: &mut State, document: &Document) -> Vec<Action> {
+pub(super) fn take(ui: &mut Ui, state: &mut State, document: &Document) -> Vec<Action> {
     let mut actions = Vec::new();
     let asking = state.dialog.is_some() && state.dialog != Some(Dialog::Shortcuts);
     let typing = ui.ctx().egui_wants_keyboard_input();
     for command in Command::all() {
-        if asking || typing && command.yields_to_focus() {
+        let free = command == Command::HideAll && state.hide_all;
+        if asking || typing && command.yields_to_focus() && !free {
             continue;
         }
         if ui.input_mut(|input| input.consume_shortcut(&command.shortcut())) {

@@ -112,7 +112,7 @@ pub(super) fn show(context: &egui::Context, state: &mut State, document: &Docume
         Dialog::Shortcuts => 440.0_f32,
         _ => 460.0,
     };
-    let modal = Modal::new(Id::new("dialog")).show(context, |ui| {
+    let modal = Modal::new(Id::unique("dialog")).show(context, |ui| {
         ui.set_width(width.min(screen.width() - 60.0));
         match &mut dialog {
             Dialog::Unsaved { before } => unsaved(ui, document, before, actions),

@@ -77,8 +77,22 @@ impl State {
     }
 }
 
-/// Sets up fonts' sizes, spacing and colours; once per context.
+/// The fonts: signs that the text font lacks, such as arrows, come from the monospaced one.
+pub fn fonts() -> egui::FontDefinitions {
+    let mut fonts = egui::FontDefinitions::default();
+    let monospaced = fonts.families.get(&egui::FontFamily::Monospace).cloned().unwrap_or_default();
+    let proportional = fonts.families.entry(egui::FontFamily::Proportional).or_default();
+    for font in monospaced {
+        if !proportional.contains(&font) {
+            proportional.push(font);
+        }
+    }
+    fonts
+}
+
+/// Sets up fonts, spacing and colours; once per context.
 pub fn style(context: &egui::Context) {
+    context.set_fonts(fonts());
     context.all_styles_mut(|style| {
         style.animation_time = 0.06;
         style.spacing.item_spacing = egui::vec2(6.0, 4.0);

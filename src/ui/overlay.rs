@@ -47,7 +47,7 @@ fn millis(value: Option<f64>) -> String {
 pub(super) fn show(context: &egui::Context, area: Rect, readout: &Readout) {
     let frame = egui::Frame::window(&context.global_style()).inner_margin(8.0);
     let size = egui::vec2((area.width() - 40.0).clamp(120.0, 330.0), (area.height() - 44.0).max(60.0));
-    egui::Area::new(Id::new("timing overlay")).fixed_pos(area.min + egui::vec2(10.0, 10.0)).show(context, |ui| {
+    egui::Area::new(Id::unique("timing overlay")).fixed_pos(area.min + egui::vec2(10.0, 10.0)).show(context, |ui| {
         frame.show(ui, |ui| {
             ui.set_max_width(size.x);
             ui.set_max_height(size.y);
@@ -93,7 +93,7 @@ fn contents(ui: &mut Ui, readout: &Readout) {
         ui.weak("No picture yet.");
     }
     for reason in &readout.reasons {
-        let mark = if reason.runs { "✔" } else { "–" };
+        let mark = if reason.runs { "●" } else { "–" };
         let text = format!("{mark} {}: {}", reason.effect, reason.because);
         let text = if reason.runs { RichText::new(text) } else { RichText::new(text).weak() };
         ui.add(egui::Label::new(text).wrap());

@@ -22,7 +22,7 @@ pub struct PanelState {
 }
 
 /// Draws the panel for a copy of the scene and the quality, and returns what the user did to them.
-pub fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: &Quality) -> Vec<Action> {
+pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: &Quality) -> Vec<Action> {
     let mut actions = Vec::new();
     filter_row(ui, state);
     let filter = state.filter.trim().to_lowercase();
@@ -50,7 +50,7 @@ pub fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: &Qualit
 fn filter_row(ui: &mut Ui, state: &mut PanelState) {
     ui.horizontal(|ui| {
         let width = ui.available_width() - 30.0;
-        let edit = egui::TextEdit::singleline(&mut state.filter).hint_text("🔍 Filter parameters").desired_width(width);
+        let edit = egui::TextEdit::singleline(&mut state.filter).hint_text("Filter parameters").desired_width(width);
         let response = ui.add(edit).on_hover_text("Shows only parameters whose name, key or help contains this (Ctrl+F)");
         row::name(ui, &response, "Filter parameters", "filter");
         if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, egui::Key::F)) {

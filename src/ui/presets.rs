@@ -32,10 +32,10 @@ pub struct Library {
 }
 
 /// Draws the list.
-pub fn show(ui: &mut Ui, library: &mut Library, document: &Document) -> Vec<Action> {
+pub(super) fn show(ui: &mut Ui, library: &mut Library, document: &Document) -> Vec<Action> {
     let mut actions = Vec::new();
     ui.strong("Presets");
-    let edit = egui::TextEdit::singleline(&mut library.search).hint_text("🔍 Search").desired_width(f32::INFINITY);
+    let edit = egui::TextEdit::singleline(&mut library.search).hint_text("Search").desired_width(f32::INFINITY);
     let response = ui.add(edit);
     super::row::name(ui, &response, "Search presets", "presets.search");
     ui.add_space(2.0);

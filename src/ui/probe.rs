@@ -4,7 +4,7 @@
 use crate::scene::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor, label};
 
 /// Whether a parameter passes a filter (already in lower case).
-pub fn fits(filter: &str, key: &str, doc: &str) -> bool {
+pub(super) fn fits(filter: &str, key: &str, doc: &str) -> bool {
     let name = key.rsplit('.').next().unwrap_or(key);
     filter.is_empty()
         || key.contains(filter)
@@ -13,13 +13,13 @@ pub fn fits(filter: &str, key: &str, doc: &str) -> bool {
 }
 
 /// The filter for the rows of a section: none if the section's own title matches, so that all of it shows.
-pub fn for_children<'f>(filter: &'f str, title: &str) -> &'f str {
+pub(super) fn for_children<'f>(filter: &'f str, title: &str) -> &'f str {
     if title.to_lowercase().contains(filter) { "" } else { filter }
 }
 
 /// Counts parameters that differ from their defaults, and those that pass a filter.
 #[derive(Debug)]
-pub struct Probe<'f> {
+pub(super) struct Probe<'f> {
     filter: &'f str,
     prefix: String,
     /// Parameters that differ from their defaults.
@@ -30,7 +30,7 @@ pub struct Probe<'f> {
 
 impl<'f> Probe<'f> {
     /// A probe for the group with this key.
-    pub fn new(filter: &'f str, key: &str) -> Self {
+    pub(super) fn new(filter: &'f str, key: &str) -> Self {
         Self { filter, prefix: key.to_owned(), modified: 0, matches: 0 }
     }
 
@@ -81,7 +81,7 @@ impl Visitor for Probe<'_> {
 
 /// Puts every parameter back to its default. Lists keep their length.
 #[derive(Clone, Copy, Debug)]
-pub struct Reset;
+pub(super) struct Reset;
 
 impl Visitor for Reset {
     fn float(&mut self, info: &Info<f32>, value: &mut f32) {
@@ -184,7 +184,7 @@ impl Visitor for Carry {
 }
 
 /// Appends a copy of item `index` to the list.
-pub fn duplicate_last_from(list: &mut dyn List, index: usize) {
+pub(super) fn duplicate_last_from(list: &mut dyn List, index: usize) {
     let mut carry = Carry::default();
     list.visit_item(index, &mut carry);
     list.append();
@@ -193,7 +193,7 @@ pub fn duplicate_last_from(list: &mut dyn List, index: usize) {
 }
 
 /// Gives the file parameter with this key a new value; tells whether there is one.
-pub fn set_file(params: &mut dyn FnMut(&mut dyn Visitor), key: &str, path: &str) -> bool {
+pub(super) fn set_file(params: &mut dyn FnMut(&mut dyn Visitor), key: &str, path: &str) -> bool {
     let mut setter = SetFile { key, path, prefix: String::new(), found: false };
     params(&mut setter);
     setter.found

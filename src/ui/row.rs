@@ -14,7 +14,7 @@ const RESET_WIDTH: f32 = 18.0;
 const WIDEST_SLIDER: f64 = 90_000.0;
 
 /// Names a widget for accessibility and tests; `key` identifies it among namesakes.
-pub fn name(ui: &Ui, response: &Response, name: &str, key: &str) {
+pub(super) fn name(ui: &Ui, response: &Response, name: &str, key: &str) {
     ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_label(name);
         node.set_author_id(key);
@@ -93,7 +93,7 @@ impl RowResult {
 }
 
 /// A number as people write it: five significant digits, no trailing noughts.
-pub fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return "0".to_owned();
     }
@@ -104,7 +104,7 @@ pub fn number(value: f64) -> String {
 }
 
 /// Reads a typed number, with or without its unit; refuses what is not finite.
-pub fn parse(text: &str) -> Option<f64> {
+pub(super) fn parse(text: &str) -> Option<f64> {
     let text = text.trim().replace('−', "-").replace(',', ".");
     let end = text.find(|letter: char| !(letter.is_ascii_digit() || "+-.eE".contains(letter))).unwrap_or(text.len());
     let number = text.get(..end)?.trim_end_matches(['e', 'E']);
@@ -161,7 +161,7 @@ fn number_control(ui: &mut Ui, scale: &Scale<'_>, value: &mut f64) -> bool {
 }
 
 /// A row for a number.
-pub fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -> bool {
+pub(super) fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -> bool {
     let title = info.label();
     let suffix = info.unit.suffix();
     let range = info.range.clone().unwrap_or(f32::MIN..=f32::MAX);
@@ -183,7 +183,7 @@ pub fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -> bool 
 }
 
 /// A row for a whole number.
-pub fn count(ui: &mut Ui, key: &str, info: &Info<u32>, value: &mut u32) -> bool {
+pub(super) fn count(ui: &mut Ui, key: &str, info: &Info<u32>, value: &mut u32) -> bool {
     let title = info.label();
     let suffix = info.unit.suffix();
     let range = info.range.clone().unwrap_or(0..=u32::MAX);
@@ -203,7 +203,7 @@ pub fn count(ui: &mut Ui, key: &str, info: &Info<u32>, value: &mut u32) -> bool 
 }
 
 /// A row for on or off.
-pub fn switch(ui: &mut Ui, key: &str, info: &Info<bool>, value: &mut bool) -> bool {
+pub(super) fn switch(ui: &mut Ui, key: &str, info: &Info<bool>, value: &mut bool) -> bool {
     let title = info.label();
     let word = |on| if on { "on" } else { "off" };
     let help = Help { key, doc: info.doc, range: None, default: word(info.default).to_owned() };
@@ -216,7 +216,7 @@ pub fn switch(ui: &mut Ui, key: &str, info: &Info<bool>, value: &mut bool) -> bo
 }
 
 /// A row for one of several named values.
-pub fn choice(ui: &mut Ui, key: &str, info: &ChoiceInfo, index: &mut usize) -> bool {
+pub(super) fn choice(ui: &mut Ui, key: &str, info: &ChoiceInfo, index: &mut usize) -> bool {
     let title = label(info.name);
     let option = |index: usize| info.options.get(index).copied().unwrap_or(["", "?", ""]);
     let help = Help { key, doc: info.doc, range: None, default: option(info.default)[1].to_owned() };
@@ -237,7 +237,7 @@ pub fn choice(ui: &mut Ui, key: &str, info: &ChoiceInfo, index: &mut usize) -> b
 }
 
 /// A row for a linear colour: a swatch for the hue and three fields for the numbers, which may exceed 1.
-pub fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Colour) -> bool {
+pub(super) fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Colour) -> bool {
     let title = info.label();
     let words = |colour: Colour| format!("{}, {}, {}", colour.0, colour.1, colour.2);
     let help = Help { key, doc: info.doc, range: Some("linear Rec.709, 0 to 100".to_owned()), default: words(info.default) };
@@ -270,7 +270,7 @@ pub fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Colour) -
 }
 
 /// A row for a file: its path, taken over with Enter or on leaving the field, and a button for the file dialog.
-pub fn file(ui: &mut Ui, key: &str, (info, value): (&Info<FileName>, &mut FileName), browse: &mut bool) -> bool {
+pub(super) fn file(ui: &mut Ui, key: &str, (info, value): (&Info<FileName>, &mut FileName), browse: &mut bool) -> bool {
     let title = info.label();
     let help = Help { key, doc: info.doc, range: None, default: "none".to_owned() };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {

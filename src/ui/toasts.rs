@@ -67,7 +67,7 @@ impl Toasts {
         context.request_repaint_after(next - now);
         let width = (area.width() - 40.0).clamp(160.0, 420.0);
         let mut closed = None;
-        egui::Area::new(Id::new("toasts"))
+        egui::Area::new(Id::unique("toasts"))
             .order(egui::Order::Foreground)
             .pivot(Align2::LEFT_BOTTOM)
             .fixed_pos(area.left_bottom() + egui::vec2(12.0, -12.0))
@@ -87,8 +87,8 @@ impl Toasts {
 
 fn draw(ui: &mut egui::Ui, toast: &Toast, width: f32) -> bool {
     let (icon, colour) = match toast.level {
-        Level::Info => ("✔", Color32::from_rgb(70, 160, 90)),
-        Level::Error => ("⚠", Color32::from_rgb(205, 90, 60)),
+        Level::Info => ("●", Color32::from_rgb(70, 160, 90)),
+        Level::Error => ("▲", Color32::from_rgb(205, 90, 60)),
     };
     let frame = Frame::popup(ui.style()).stroke(Stroke::new(1.0, colour));
     frame

@@ -7,7 +7,7 @@ use crate::app::action::Action;
 use crate::app::document::{Document, TIME_FACTOR_RANGE};
 
 /// Draws the bar.
-pub fn show(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
+pub(super) fn show(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
         menus(ui, state, document, actions);
         ui.separator();
@@ -73,7 +73,7 @@ fn entries(ui: &mut Ui, groups: &[&[Command]], chosen: &mut Option<Command>) {
 
 fn theme_and_scale(ui: &mut Ui) {
     ui.horizontal(|ui| {
-        for (theme, title) in [(Theme::Light, "☀ Light"), (Theme::Dark, "🌙 Dark")] {
+        for (theme, title) in [(Theme::Light, "Light"), (Theme::Dark, "Dark")] {
             if ui.selectable_label(ui.ctx().theme() == theme, title).clicked() {
                 ui.ctx().set_theme(theme);
             }
@@ -92,13 +92,13 @@ fn theme_and_scale(ui: &mut Ui) {
 }
 
 fn time(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
-    let (icon, verb) = if document.is_playing() { ("⏸", "Pause") } else { ("▶", "Play") };
+    let (icon, verb) = if document.is_playing() { ("▮▮", "Pause") } else { ("▶", "Play") };
     let play = ui.button(icon).on_hover_text(format!("{verb} wind and time (Space)"));
     row::name(ui, &play, verb, "time.play");
     if play.clicked() {
         actions.push(Action::Play(!document.is_playing()));
     }
-    let reset = ui.add_enabled(document.time_secs() != 0.0, egui::Button::new("⏮")).on_hover_text("Time back to 0");
+    let reset = ui.add_enabled(document.time_secs() != 0.0, egui::Button::new("⇤")).on_hover_text("Time back to 0");
     row::name(ui, &reset, "Reset time", "time.reset");
     if reset.clicked() {
         actions.push(Action::ResetTime);
@@ -106,9 +106,10 @@ fn time(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
     ui.add(egui::Label::new(egui::RichText::new(clock(document.time_secs())).monospace()).selectable(false))
         .on_hover_text("Time since the scene began");
     let mut factor = document.time_factor();
+    let speed = factor.max(0.1) * 0.01;
     let field = egui::DragValue::new(&mut factor)
         .range(TIME_FACTOR_RANGE)
-        .speed(factor.max(0.1) * 0.01)
+        .speed(speed)
         .prefix("×")
         .update_while_editing(false)
         .custom_formatter(|value, _| row::number(value))

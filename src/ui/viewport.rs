@@ -63,7 +63,7 @@ impl ViewportState {
 }
 
 /// Draws the picture and notes the gestures.
-pub fn show(ui: &mut Ui, state: &mut ViewportState, document: &Document) {
+pub(super) fn show(ui: &mut Ui, state: &mut ViewportState, document: &Document) {
     let rect = ui.available_rect_before_wrap();
     state.rect = rect;
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
