@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use egui_wgpu::{RendererOptions, ScreenDescriptor};
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::window::Window;
 
+use super::painter::{Painter, Screen};
 use super::surface::{Acquired, WindowSurface};
 use super::worker::Event;
 use crate::gpu::Gpu;
@@ -16,7 +16,7 @@ use crate::ui::{self, Picture};
 pub(super) struct Egui {
     context: egui::Context,
     state: egui_winit::State,
-    renderer: egui_wgpu::Renderer,
+    painter: Painter,
     /// The texture that stands for the picture, and the texture it was made from.
     picture: Option<(Picture, wgpu::Texture)>,
     /// How often the device was replaced.
@@ -27,7 +27,7 @@ pub(super) struct Egui {
 struct Output {
     triangles: Vec<egui::ClippedPrimitive>,
     textures: egui::TexturesDelta,
-    screen: ScreenDescriptor,
+    screen: Screen,
 }
 
 impl Egui {
@@ -46,8 +46,8 @@ impl Egui {
         let mut state =
             egui_winit::State::new(context.clone(), egui::ViewportId::ROOT, window, Some(scale), theme, Some(limit));
         state.init_accesskit(event_loop, window, proxy);
-        let renderer = egui_wgpu::Renderer::new(&gpu.device, format, RendererOptions::default());
-        Self { context, state, renderer, picture: None, rebuilt: 0 }
+        let painter = Painter::new(gpu, format);
+        Self { context, state, painter, picture: None, rebuilt: 0 }
     }
 
     /// The context.
@@ -57,7 +57,7 @@ impl Egui {
 
     /// Starts over on another device; theme, scale and folded sections stay.
     pub(super) fn rebuild(&mut self, gpu: &Gpu, format: wgpu::TextureFormat) {
-        self.renderer = egui_wgpu::Renderer::new(&gpu.device, format, RendererOptions::default());
+        self.painter = Painter::new(gpu, format);
         self.picture = None;
         // The new renderer lacks the fonts' texture. Only other definitions make egui send it anew, so one font gets
         // one more name, which nothing uses.
@@ -82,16 +82,13 @@ impl Egui {
     /// Makes the renderer's texture known to egui.
     pub(super) fn set_picture(&mut self, gpu: &Gpu, texture: Option<&crate::gpu::Texture>) -> Option<Picture> {
         let Some(texture) = texture else { return self.picture.as_ref().map(|(picture, _)| *picture) };
-        let filter = wgpu::FilterMode::Linear;
         let size = texture.size();
         let id = match &self.picture {
             Some((picture, source)) if *source == texture.texture => picture.texture,
-            Some((picture, _)) => {
-                let id = picture.texture;
-                self.renderer.update_egui_texture_from_wgpu_texture(&gpu.device, &texture.view, filter, id);
-                id
+            before => {
+                let id = before.as_ref().map(|(picture, _)| picture.texture);
+                self.painter.register(gpu, &texture.view, id)
             }
-            None => self.renderer.register_native_texture(&gpu.device, &texture.view, filter),
         };
         let picture = Picture { texture: id, size };
         self.picture = Some((picture, texture.texture.clone()));
@@ -113,46 +110,27 @@ impl Egui {
         let output = Output {
             triangles: self.context.tessellate(output.shapes, output.pixels_per_point),
             textures: output.textures_delta,
-            screen: ScreenDescriptor { size_in_pixels: surface.size(), pixels_per_point: output.pixels_per_point },
+            screen: Screen { size_px: surface.size(), pixels_per_point: output.pixels_per_point },
         };
         self.draw(window, gpu, surface, output);
         again.unwrap_or(Duration::MAX)
     }
 
     fn draw(&mut self, window: &Window, gpu: &Gpu, surface: &mut WindowSurface, mut output: Output) {
-        let Gpu { device, queue, .. } = gpu;
         for (id, deltas) in &output.textures.set {
             for delta in deltas {
-                self.renderer.update_texture(device, queue, *id, delta);
+                self.painter.update_texture(gpu, *id, delta);
             }
         }
         if let Acquired::Image(image) = surface.acquire(gpu) {
             let view = image.texture.create_view(&wgpu::TextureViewDescriptor::default());
-            let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("panels") });
-            let uploads =
-                self.renderer.update_buffers(device, queue, &mut encoder, &output.triangles, &output.screen);
-            {
-                let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-                    label: Some("panels"),
-                    color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                        view: &view,
-                        depth_slice: None,
-                        resolve_target: None,
-                        ops: wgpu::Operations {
-                            load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                            store: wgpu::StoreOp::Store,
-                        },
-                    })],
-                    ..Default::default()
-                });
-                self.renderer.render(&mut pass.forget_lifetime(), &output.triangles, &output.screen);
-            }
-            queue.submit(uploads.into_iter().chain([encoder.finish()]));
+            let commands = self.painter.paint(gpu, &view, &output.triangles, output.screen);
+            gpu.queue.submit([commands]);
             window.pre_present_notify();
-            queue.present(image);
+            gpu.queue.present(image);
         }
         for id in &output.textures.free {
-            self.renderer.free_texture(id);
+            self.painter.free_texture(*id);
         }
         // egui insists on hearing that all of them were seen to.
         output.textures.clear();

@@ -304,7 +304,8 @@ fn recover(ui: &mut Ui, name: &str, actions: &mut Vec<Action>) -> Fate {
 
 fn shortcuts(ui: &mut Ui, height: f32) -> Fate {
     ui.heading("Shortcuts");
-    egui::ScrollArea::vertical().max_height(height.max(80.0)).show(ui, |ui| {
+    let height = height.max(80.0);
+    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
         Grid::new("shortcuts").num_columns(2).spacing([24.0, 3.0]).show(ui, |ui| {
             for (keys, what) in GESTURES {
                 ui.label(RichText::new(keys).strong());

@@ -62,7 +62,11 @@ pub(super) fn show(context: &egui::Context, area: Rect, readout: &Readout) {
 fn contents(ui: &mut Ui, readout: &Readout) {
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.strong("Time per picture");
-    ui.weak(format!("Median of {} · {}", readout.frames, readout.source));
+    ui.weak(match readout.frames {
+        0 => "No picture yet".to_owned(),
+        1 => format!("One picture · {}", readout.source),
+        frames => format!("Median of {frames} pictures · {}", readout.source),
+    });
     Grid::new("pass times").num_columns(2).spacing([18.0, 2.0]).show(ui, |ui| {
         for line in &readout.passes {
             ui.label(line.pass);
@@ -90,7 +94,7 @@ fn contents(ui: &mut Ui, readout: &Readout) {
     ui.add_space(6.0);
     ui.strong("Plan");
     if readout.reasons.is_empty() {
-        ui.weak("No picture yet.");
+        ui.weak("None yet");
     }
     for reason in &readout.reasons {
         let mark = if reason.runs { "●" } else { "–" };

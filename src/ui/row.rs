@@ -48,7 +48,7 @@ fn frame(
     let height = ui.spacing().interact_size.y;
     let width = ui.available_width();
     let (rect, _) = ui.allocate_exact_size(Vec2::new(width, height), egui::Sense::hover());
-    let label_width = (width * 0.36).clamp(90.0, 190.0);
+    let label_width = (width * 0.41).clamp(90.0, 200.0);
     let mut label_rect = rect;
     label_rect.set_width(label_width);
     let mut control_rect = rect;
