@@ -53,10 +53,8 @@ pub enum Action {
 pub enum Request {
     /// Start from the default scene.
     New,
-    /// Open a preset or an EXR that holds one.
+    /// Open a preset, an EXR or PNG that holds one, or a built-in preset by its short name.
     Open(PathBuf),
-    /// Open a built-in preset by its name.
-    OpenBuiltin(String),
     /// Save where it came from.
     Save,
     /// Save under a path.
@@ -152,7 +150,7 @@ impl Request {
     pub fn name(&self) -> &'static str {
         match self {
             Self::New => "new",
-            Self::Open(_) | Self::OpenBuiltin(_) => "open",
+            Self::Open(_) => "open",
             Self::Save => "save",
             Self::SaveAs(_) => "save as",
             Self::Answer(_) => "answer",

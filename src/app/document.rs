@@ -24,7 +24,6 @@ pub struct Document {
 impl Document {
     /// A document that shows a preset which is not a file of the user's, with time standing.
     pub fn new(preset: Preset, quality: Quality) -> Self {
-        let quality = preset.quality.map_or(quality, Quality::level);
         Self {
             saved: preset.clone(),
             preset,

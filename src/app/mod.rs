@@ -12,7 +12,7 @@ mod painter;
 mod recovery;
 pub mod session;
 mod statistics;
-pub mod storage;
+mod storage;
 mod surface;
 mod viewport;
 mod window;
@@ -24,12 +24,11 @@ pub use session::{Folders, Session};
 
 use std::path::PathBuf;
 
-use anyhow::Context as _;
-
+use crate::files;
 use crate::gpu::AdapterChoice;
 use crate::scene::builtin::BUILTINS;
 use crate::scene::edit;
-use crate::scene::{Preset, Quality};
+use crate::scene::Quality;
 
 /// How the editor starts.
 #[derive(Clone, Debug, Default)]
@@ -59,34 +58,19 @@ pub fn run(options: Options) -> anyhow::Result<()> {
     if cfg!(all(unix, not(target_os = "macos"))) && !has("DISPLAY") && !has("WAYLAND_DISPLAY") {
         return Err(NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()).into());
     }
+    let document = open(&options)?;
     let folders = Folders::of_user();
-    let document = open(&options, &folders)?;
     window::run(Session::new(document, folders), options.adapter)
 }
 
 /// The document that the options ask for.
-fn open(options: &Options, folders: &Folders) -> anyhow::Result<Document> {
-    let mut document = match &options.scene {
-        None => {
-            let preset = BUILTINS.first().map(|builtin| builtin.preset()).transpose()?;
-            Document::new(preset.unwrap_or_default(), Quality::default())
-        }
-        Some(path) if path.exists() || path.extension().is_some() => {
-            let loaded = storage::load(path, &folders.maps)?;
-            let quality = loaded.quality.unwrap_or_default();
-            if loaded.is_preset_file {
-                Document::from_file(loaded.preset, quality, path.clone())
-            } else {
-                Document::new(Preset { quality: None, ..loaded.preset }, quality)
-            }
-        }
-        Some(name) => Document::new(storage::builtin(&name.to_string_lossy())?, Quality::default()),
-    };
-    let mut scene = document.preset().scene.clone();
-    for assignment in &options.sets {
-        let (key, value) = edit::split(assignment)?;
-        edit::set(&mut scene, key, value).with_context(|| format!("--set {assignment}"))?;
-        document.apply(&Action::EditScene { key: key.to_owned(), scene: Box::new(scene.clone()) });
-    }
+fn open(options: &Options) -> anyhow::Result<Document> {
+    let first = BUILTINS.first().map(|builtin| PathBuf::from(builtin.name));
+    let source = options.scene.clone().or(first).unwrap_or_default();
+    let mut document = session::document_of(files::open(&source)?, Quality::default());
+    let (mut scene, mut quality) = (document.preset().scene.clone(), document.quality().clone());
+    edit::apply(&options.sets, &mut scene, &mut quality)?;
+    document.apply(&Action::EditScene { key: "--set".to_owned(), scene: Box::new(scene) });
+    document.apply(&Action::EditQuality { key: "--set".to_owned(), quality: Box::new(quality) });
     Ok(document)
 }

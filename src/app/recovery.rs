@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::document::Document;
-use super::storage;
 use crate::scene::Preset;
 
 /// How often the copy is renewed.
@@ -22,7 +21,7 @@ impl Recovery {
     /// Copies go into `folder`; returns what an earlier run left there.
     pub(super) fn open(folder: &Path) -> (Self, Option<Preset>) {
         let path = folder.join("recovery.ron");
-        let left = storage::load(&path, folder).ok().map(|loaded| loaded.preset);
+        let left = Preset::load(&path).ok();
         (Self { path, written: None, last: Instant::now() }, left)
     }
 
@@ -42,7 +41,7 @@ impl Recovery {
             }
         } else if self.written.as_ref() != Some(document.preset()) {
             let folder_made = self.path.parent().is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
-            if folder_made && storage::save(document.preset(), &self.path).is_ok() {
+            if folder_made && document.preset().save(&self.path).is_ok() {
                 self.written = Some(document.preset().clone());
             }
         }

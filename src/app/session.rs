@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::action::{Action, Answer, Browse, Request};
 use super::document::Document;
-use super::storage::{self, Loaded};
-use crate::scene::{Preset, Scene};
+use super::storage;
+use crate::files::{self, Origin, Sky};
+use crate::scene::{Preset, Quality, Scene};
 use crate::ui::{self, Dialog, set_file_in};
 
 /// Where the program keeps what belongs to the user.
@@ -13,8 +14,6 @@ use crate::ui::{self, Dialog, set_file_in};
 pub struct Folders {
     /// Presets that the list shows.
     pub presets: PathBuf,
-    /// Maps that came inside images.
-    pub maps: PathBuf,
     /// Screenshots.
     pub pictures: PathBuf,
     /// What a crash leaves behind.
@@ -40,7 +39,6 @@ impl Folders {
     pub fn below(root: &Path) -> Self {
         Self {
             presets: root.join("presets"),
-            maps: root.join("maps"),
             pictures: root.join("pictures"),
             state: root.join("state"),
         }
@@ -99,7 +97,7 @@ impl Session {
 
     fn request(&mut self, request: Request) -> Option<Request> {
         match request {
-            Request::New | Request::Open(_) | Request::OpenBuiltin(_) | Request::Quit => self.unless_unsaved(request),
+            Request::New | Request::Open(_) | Request::Quit => self.unless_unsaved(request),
             Request::Save => {
                 match self.document.path().cloned() {
                     Some(path) => {
@@ -152,13 +150,6 @@ impl Session {
                 self.open(&path);
                 None
             }
-            Request::OpenBuiltin(name) => {
-                match storage::builtin(&name) {
-                    Ok(preset) => self.document = Document::new(preset, quality),
-                    Err(error) => self.ui.toasts.error(error),
-                }
-                None
-            }
             other => Some(other),
         }
     }
@@ -202,7 +193,7 @@ impl Session {
             // A folder that cannot be made is reported by the write below, with its path.
             let _ = std::fs::create_dir_all(&self.folders.presets);
         }
-        match storage::save(self.document.preset(), path) {
+        match self.document.preset().save(path) {
             Ok(()) => {
                 self.document.mark_saved(path.to_owned());
                 self.ui.toasts.info(format!("Saved {}", path.display()));
@@ -216,27 +207,11 @@ impl Session {
         }
     }
 
-    /// Opens a file; the document stays as it is if that fails.
-    pub fn open(&mut self, path: &Path) {
-        match storage::load(path, &self.folders.maps) {
-            Ok(loaded) => self.take(loaded, path),
+    /// Opens a sky; the document stays as it is if that fails.
+    pub fn open(&mut self, source: &Path) {
+        match files::open(source) {
+            Ok(sky) => self.document = document_of(sky, self.document.quality().clone()),
             Err(error) => self.ui.toasts.error(error),
-        }
-    }
-
-    fn take(&mut self, loaded: Loaded, path: &Path) {
-        let Loaded { preset, quality, is_preset_file, notes } = loaded;
-        let before = self.document.quality().clone();
-        self.document = if is_preset_file {
-            Document::from_file(preset, before, path.to_owned())
-        } else {
-            Document::new(preset, before)
-        };
-        if let Some(quality) = quality {
-            self.document.apply(&Action::EditQuality { key: String::new(), quality: Box::new(quality) });
-        }
-        for note in notes {
-            self.ui.toasts.error(note);
         }
     }
 
@@ -256,5 +231,14 @@ impl Session {
     fn refresh_library(&mut self) {
         let search = std::mem::take(&mut self.ui.library.search);
         self.ui.library = ui::Library { search, ..storage::library(&self.folders.presets) };
+    }
+}
+
+/// The document of an opened sky; `quality` is kept where the sky says nothing of it.
+pub fn document_of(sky: Sky, quality: Quality) -> Document {
+    let quality = sky.quality.unwrap_or(quality);
+    match sky.origin {
+        Origin::Preset(path) => Document::from_file(sky.preset, quality, path),
+        Origin::Builtin(_) | Origin::Picture(_) => Document::new(sky.preset, quality),
     }
 }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::document::Document;
 use super::statistics::Statistics;
 use crate::gpu::Gpu;
+use crate::plan::FramePlan;
 use crate::render::{Progress, RenderError, Renderer};
 use crate::scene::{Output, Quality, Scene, UpdateFraction};
 use crate::ui::Readout;
@@ -13,6 +14,8 @@ use crate::ui::Readout;
 const SLICE: Duration = Duration::from_millis(30);
 /// A picture whose inputs have changed may go on for this long: a slow one is begun anew instead.
 const PATIENCE: Duration = Duration::from_millis(400);
+/// How often a frame that waits for its shaders is begun anew.
+const COMPILE_POLL: Duration = Duration::from_millis(60);
 /// Inputs that have kept still for this long count as settled; during a drag pictures are finished, late as they are.
 const SETTLED: Duration = Duration::from_millis(150);
 
@@ -126,6 +129,11 @@ impl Viewport {
             }
             Progress::Compiling => {
                 self.compiling = true;
+                // Whoever waits for a shader begins again: it may be there, and the inputs may be others.
+                if self.since.is_some_and(|since| since.elapsed() > COMPILE_POLL) {
+                    self.since = None;
+                    self.left = self.left.max(1);
+                }
                 Ok(Step::Busy)
             }
             Progress::Working => {
@@ -135,7 +143,9 @@ impl Viewport {
             Progress::Finished(report) => {
                 self.compiling = false;
                 self.since = None;
-                self.left = self.left.saturating_sub(1);
+                // A picture drawn as the one before was planned, while its own shaders compile, does not count.
+                let planned = report.plan == FramePlan::new(&document.frame(inputs.size, Output::Display));
+                self.left = if planned { self.left.saturating_sub(1) } else { self.left.max(1) };
                 self.refused = None;
                 self.statistics.add(*report);
                 Ok(Step::Finished)

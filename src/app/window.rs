@@ -9,7 +9,7 @@ use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Fullscreen, Window, WindowId};
 
-use super::action::{Browse, Request};
+use super::action::{Browse, Export, Request, Still};
 use super::egui_glue::Egui;
 use super::hands::Hands;
 use super::recovery::Recovery;
@@ -18,7 +18,7 @@ use super::viewport::{Step, Viewport};
 use super::worker::{Event, Message, StillJob, Worker};
 use super::{Action, NoDisplay, Session};
 use crate::gpu::{AdapterChoice, Gpu};
-use crate::scene::Quality;
+use crate::scene::{Quality, UpdateFraction};
 use crate::ui::Readout;
 
 /// Shortest time between two frames of the panels.
@@ -329,7 +329,9 @@ impl App {
             Request::Export(export) => {
                 let Some(live) = &self.live else { return };
                 let document = &self.session.document;
-                let quality = export.level.map_or_else(|| document.quality().clone(), Quality::level);
+                let level = export.level.map_or_else(|| document.quality().clone(), Quality::level);
+                // A still has no pictures before it to take pixels from, and the size asked for is that of the file.
+                let quality = Quality { update: UpdateFraction::Full, resolution_scale: 1.0, ..level };
                 self.session.ui.busy = Some("Rendering a still…".to_owned());
                 self.worker.still(StillJob {
                     gpu: live.gpu.clone(),
@@ -348,7 +350,6 @@ impl App {
             }
             Request::New
             | Request::Open(_)
-            | Request::OpenBuiltin(_)
             | Request::Save
             | Request::SaveAs(_)
             | Request::Answer(_) => {}
@@ -371,8 +372,19 @@ impl App {
         match live.viewport.renderer().display_rgba8() {
             Ok(image) => {
                 let document = &self.session.document;
-                let sky = (document.preset().clone(), document.quality().clone());
-                self.worker.screenshot(self.session.folders.pictures.clone(), sky, image);
+                let still = StillJob {
+                    gpu: live.gpu.clone(),
+                    preset: document.preset().clone(),
+                    quality: document.quality().clone(),
+                    time_secs: document.time_secs(),
+                    export: Export {
+                        still: Still::Png,
+                        size: image.0,
+                        level: None,
+                        path: self.session.folders.pictures.clone(),
+                    },
+                };
+                self.worker.screenshot(still, image);
             }
             Err(error) => self.session.ui.toasts.error(error),
         }

@@ -7,12 +7,11 @@ use std::time::{Duration, Instant};
 use winit::event_loop::EventLoopProxy;
 
 use super::action::{Browse, Export, Still};
-use crate::export::exr::{EmbeddedFile, ExrMetadata, ExrOptions, FloatImage, PRESET, QUALITY, write_exr};
-use crate::export::png::{PngPixels, write_png};
+use crate::export::exr::ExrOptions;
+use crate::files::{About, save_exr, save_png};
 use crate::gpu::Gpu;
-use crate::render::{LinearImage, Renderer};
-use crate::scene::edit::map_files;
-use crate::scene::{Frame, Output, PRESET_VERSION, Preset, Quality, quality_to_ron};
+use crate::render::Renderer;
+use crate::scene::{Frame, Output, Preset, Quality};
 
 /// What reaches the event loop from outside the window.
 #[derive(Debug)]
@@ -53,7 +52,7 @@ pub(super) struct Worker {
     proxy: EventLoopProxy<Event>,
 }
 
-/// Everything a still needs, owned, so that the document can change meanwhile.
+/// Everything a still or a screenshot needs, owned, so that the document can change meanwhile.
 #[derive(Clone, Debug)]
 pub(super) struct StillJob {
     /// The device.
@@ -66,6 +65,12 @@ pub(super) struct StillJob {
     pub(super) time_secs: f64,
     /// What is written and where.
     pub(super) export: Export,
+}
+
+impl StillJob {
+    fn about(&self) -> About<'_> {
+        About { preset: &self.preset, quality: &self.quality, time_secs: self.time_secs }
+    }
 }
 
 impl Worker {
@@ -100,14 +105,14 @@ impl Worker {
         });
     }
 
-    /// Writes the window's picture as PNG into `folder`, under the first free numbered name.
-    pub(super) fn screenshot(&self, folder: PathBuf, (preset, quality): (Preset, Quality), image: ([u32; 2], Vec<u8>)) {
+    /// Writes the window's picture as PNG into the folder that the job names, under the first free numbered name.
+    pub(super) fn screenshot(&self, job: StillJob, (size, pixels): ([u32; 2], Vec<u8>)) {
         self.spawn("screenshot", move || {
+            let folder = &job.export.path;
             // A folder that cannot be made is reported by the write, with its path.
-            let _ = std::fs::create_dir_all(&folder);
-            let path = free_name(&folder);
-            let (size, pixels) = image;
-            match write_png(&path, size, PngPixels::Rgba8(&pixels), &png_text(&preset, &quality)) {
+            let _ = std::fs::create_dir_all(folder);
+            let path = free_name(folder);
+            match save_png(&path, size, &pixels, &job.about()) {
                 Ok(()) => Message::Written(path),
                 Err(error) => Message::Failed(error.to_string()),
             }
@@ -139,14 +144,6 @@ fn free_name(folder: &Path) -> PathBuf {
     (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(10_000))
 }
 
-fn png_text(preset: &Preset, quality: &Quality) -> Vec<(String, String)> {
-    vec![
-        ("Software".to_owned(), concat!("nephoscope ", env!("CARGO_PKG_VERSION")).to_owned()),
-        (PRESET.to_owned(), preset.to_ron()),
-        (QUALITY.to_owned(), quality_to_ron(quality)),
-    ]
-}
-
 /// A renderer of its own on the same device, so that the window's keeps its history and its picture.
 fn still(job: &StillJob) -> anyhow::Result<()> {
     let mut renderer = Renderer::new(&job.gpu)?;
@@ -166,35 +163,9 @@ fn still(job: &StillJob) -> anyhow::Result<()> {
     let path = &job.export.path;
     if job.export.still == Still::Png {
         let (size, pixels) = renderer.display_rgba8()?;
-        write_png(path, size, PngPixels::Rgba8(&pixels), &png_text(&job.preset, &job.quality))?;
+        save_png(path, size, &pixels, &job.about())?;
     } else {
-        let image = renderer.linear()?;
-        write_exr(path, &float_image(&image), &metadata(job, &image), ExrOptions::default())?;
+        save_exr(path, &renderer.linear()?, &job.about(), ExrOptions::default())?;
     }
     Ok(())
-}
-
-fn float_image(image: &LinearImage) -> FloatImage {
-    FloatImage {
-        width: image.size[0],
-        height: image.size[1],
-        rgba: image.rgba.clone(),
-        depth: Some(image.distance_m.clone()).filter(|distances| distances.len() == image.rgba.len()),
-        crop: None,
-    }
-}
-
-fn metadata(job: &StillJob, image: &LinearImage) -> ExrMetadata {
-    let mut layers = job.preset.scene.weather.layers.clone();
-    let files = map_files(&mut layers).filter(|name| !name.is_empty());
-    let files = files.filter_map(|name| std::fs::read(&*name).ok().map(|bytes| EmbeddedFile::new(name.as_str(), bytes)));
-    ExrMetadata {
-        comments: job.preset.name.clone(),
-        preset_ron: job.preset.to_ron(),
-        preset_version: PRESET_VERSION,
-        quality_ron: quality_to_ron(&job.quality),
-        candela_per_unit: image.candela_per_unit,
-        files: files.collect(),
-        ..ExrMetadata::default()
-    }
 }

@@ -186,9 +186,7 @@ impl Gpu {
 
     /// Waits until the device has finished all it was given.
     pub fn wait(&self) -> Result<(), GpuError> {
-        self.device
-            .poll(wgpu::PollType::wait_indefinitely())
-            .map_err(|error| GpuError::Device(error.to_string()))?;
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map_err(|error| GpuError::Device(error.to_string()))?;
         self.take_uncaught_error().map_or(Ok(()), Err)
     }
 

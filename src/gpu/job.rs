@@ -13,6 +13,8 @@ use super::{Gpu, GpuError};
 pub struct Job {
     /// The pass it belongs to: timer, debug group and bench column.
     pub pass: &'static str,
+    /// Rows it computes; 0 where that is not counted.
+    pub rows: u32,
     pipeline: wgpu::ComputePipeline,
     groups: Vec<(u32, wgpu::BindGroup)>,
     grid: [u32; 3],
@@ -25,7 +27,13 @@ impl Job {
         groups: Vec<(u32, wgpu::BindGroup)>,
         grid: [u32; 3],
     ) -> Self {
-        Self { pass, pipeline, groups, grid }
+        Self { pass, rows: 0, pipeline, groups, grid }
+    }
+
+    /// The same, known to compute so many rows.
+    #[must_use]
+    pub fn with_rows(self, rows: u32) -> Self {
+        Self { rows, ..self }
     }
 
     fn record(&self, encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>) {
@@ -82,7 +90,7 @@ pub struct PassTime {
 }
 
 /// Adds up the jobs of each pass, in order of first appearance.
-fn add(times: &mut Vec<PassTime>, pass: &'static str, millis: Option<f64>) {
+pub fn add(times: &mut Vec<PassTime>, pass: &'static str, millis: Option<f64>) {
     match times.iter_mut().find(|time| time.pass == pass) {
         Some(time) => time.millis = time.millis.zip(millis).map(|(sum, more)| sum + more),
         None => times.push(PassTime { pass, millis }),
@@ -139,8 +147,7 @@ fn run_with_timestamps(gpu: &Gpu, jobs: &[Job]) -> Result<Vec<PassTime>, GpuErro
         });
         let size = u64::from(count) * 8;
         let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        let descriptor =
-            wgpu::BufferDescriptor { label: Some("pass times"), size, usage, mapped_at_creation: false };
+        let descriptor = wgpu::BufferDescriptor { label: Some("pass times"), size, usage, mapped_at_creation: false };
         let resolved = gpu.device.create_buffer(&descriptor);
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         for (index, job) in (0..count).step_by(2).zip(jobs) {

@@ -115,7 +115,8 @@ impl Program {
     fn compile(gpu: &Gpu, table: ShaderTable, key: &ProgramKey) -> Result<Self, GpuError> {
         let (source, bindings) = table.compose(key)?;
         let label = key.to_string();
-        let constants: Vec<(&str, f64)> = key.constants.iter().map(|(name, value)| (*name, f64::from(*value))).collect();
+        let constants: Vec<(&str, f64)> =
+            key.constants.iter().map(|(name, value)| (*name, f64::from(*value))).collect();
         let pipeline = gpu
             .checked(|| {
                 let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -159,8 +160,7 @@ impl Program {
             }
             if !entries.is_empty() {
                 let layout = self.pipeline.get_bind_group_layout(group);
-                let descriptor =
-                    wgpu::BindGroupDescriptor { label: Some(pass), layout: &layout, entries: &entries };
+                let descriptor = wgpu::BindGroupDescriptor { label: Some(pass), layout: &layout, entries: &entries };
                 groups.push((group, gpu.device.create_bind_group(&descriptor)));
             }
         }

@@ -39,9 +39,7 @@ pub fn rgba(gpu: &Gpu, source: &Texture) -> Result<Vec<[f32; 4]>, GpuError> {
     Ok(match source.texture.format() {
         wgpu::TextureFormat::Rgba16Float => bytes
             .chunks_exact(8)
-            .map(|texel| {
-                [0, 2, 4, 6].map(|at| half::f16::from_le_bytes([texel[at], texel[at + 1]]).to_f32())
-            })
+            .map(|texel| [0, 2, 4, 6].map(|at| half::f16::from_le_bytes([texel[at], texel[at + 1]]).to_f32()))
             .collect(),
         _ => bytes
             .chunks_exact(16)

@@ -1,21 +1,50 @@
 //! Decides what one frame needs. No GPU here, so every rule has a plain test.
+//!
+//! `None` and `false` mean: not compiled, not bound, not allocated, not dispatched. Every entry says why in words.
 
-use crate::scene::{Frame, Output};
+mod history;
+mod light;
+mod reasons;
+mod variant;
 
-/// One line of the plan for people: what runs or does not, and why.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Reason {
-    /// The effect.
-    pub effect: &'static str,
-    /// Whether this frame runs it.
-    pub runs: bool,
-    /// Why, in words.
-    pub because: String,
+pub use history::{HistoryKey, UpdatePattern};
+pub use light::{KeyLight, Lighting};
+pub use reasons::Reason;
+pub use variant::MarchVariant;
+
+use crate::scene::{Frame, Output, Projection, Scene, ToneMap, UpdateFraction};
+use reasons::Reasons;
+
+/// Whether and how the ground is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GroundPlan {
+    /// Whether it has relief.
+    pub terrain: bool,
+    /// Edge length of the map of cloud shadows on it.
+    pub shadow_px: Option<u32>,
 }
 
-/// Everything one frame does, in order. `None` means: not compiled, not bound, not allocated, not dispatched.
+/// Everything one frame does, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
+    /// The light that is marched towards.
+    pub key: KeyLight,
+    /// Whether stars are drawn.
+    pub stars: bool,
+    /// The ground, where any can be seen.
+    pub ground: Option<GroundPlan>,
+    /// The cloud march, where any cloud can be seen.
+    pub march: Option<MarchVariant>,
+    /// Which pixels are computed, where not all are.
+    pub temporal: Option<UpdatePattern>,
+    /// Samples along streaks of light.
+    pub sunshafts: Option<u32>,
+    /// Whether targets are float, for a file.
+    pub float: bool,
+    /// Whether the clouds are written without what lies behind them.
+    pub alone: bool,
+    /// How light becomes display colour.
+    pub tone_map: ToneMap,
     /// Why each entry is as it is.
     pub reasons: Vec<Reason>,
 }
@@ -23,7 +52,132 @@ pub struct FramePlan {
 impl FramePlan {
     /// The plan of a frame.
     pub fn new(frame: &Frame<'_>) -> Self {
-        let _ = frame.output == Output::Display;
-        Self { reasons: Vec::new() }
+        let scene = frame.scene;
+        let lighting = Lighting::new(scene);
+        let mut why = Reasons::default();
+        let ground = ground(frame, &lighting, &mut why);
+        let march = MarchVariant::new(frame, ground.is_some(), &lighting, &mut why);
+        let temporal = temporal(frame, march.is_some(), &mut why);
+        let sunshafts = sunshafts(frame, march.is_some() || ground.is_some(), &lighting, &mut why);
+        Self {
+            key: lighting.key,
+            stars: stars(&lighting, &mut why),
+            ground,
+            march,
+            temporal,
+            sunshafts,
+            float: frame.output != Output::Display,
+            alone: frame.output == Output::CloudsAlone,
+            tone_map: scene.display.tone_map,
+            reasons: why.0,
+        }
     }
 }
+
+fn ground(frame: &Frame<'_>, lighting: &Lighting, why: &mut Reasons) -> Option<GroundPlan> {
+    let ground = &frame.scene.ground;
+    let camera = &frame.scene.camera;
+    let relief_m = ground.mountains_m + ground.hills_m;
+    let lowest_ray_deg = match camera.projection {
+        Projection::Perspective => camera.pitch_deg - half_diagonal_deg(frame),
+        Projection::Equirect => -90.0,
+        Projection::Dome => 0.0,
+    };
+    let relief_angle_deg = if relief_m > 0.0 { 35.0 } else { 0.0 };
+    if !ground.visible {
+        why.no("ground", "it is switched off");
+        return None;
+    }
+    if frame.output == Output::CloudsAlone && relief_m <= 0.0 {
+        why.no("ground", "only clouds are written, and a plain hides none of them above the horizon");
+        return None;
+    }
+    if lowest_ray_deg > relief_angle_deg {
+        why.no("ground", format!("the view begins {lowest_ray_deg:.0}° above the horizon"));
+        return None;
+    }
+    why.yes("ground", "it is in view");
+    let terrain = relief_m > 0.0;
+    why.either(terrain, "terrain", format!("relief is {relief_m:.0} m high"), "there are no hills and no mountains");
+    let shadow_px = cloud_shadow(frame, lighting, why);
+    Some(GroundPlan { terrain, shadow_px })
+}
+
+fn cloud_shadow(frame: &Frame<'_>, lighting: &Lighting, why: &mut Reasons) -> Option<u32> {
+    let scene = frame.scene;
+    let because = if scene.ground.cloud_shadows <= 0.0 {
+        "their strength is 0"
+    } else if lighting.key == KeyLight::None || lighting.towards_key.y <= 0.02 {
+        "no light falls steeply enough on the ground"
+    } else if scene.visible_layers().next().is_none() {
+        "there is no cloud to cast any"
+    } else {
+        why.yes("cloud shadows", "lit ground is in view below clouds");
+        return Some(frame.quality.shadow_map_px);
+    };
+    why.no("cloud shadows", because);
+    None
+}
+
+fn temporal(frame: &Frame<'_>, has_clouds: bool, why: &mut Reasons) -> Option<UpdatePattern> {
+    let because = if !has_clouds {
+        "no cloud is marched"
+    } else if frame.output != Output::Display {
+        "a still is marched whole"
+    } else if frame.quality.update == UpdateFraction::Full {
+        "every pixel is computed in every frame"
+    } else {
+        let pattern = UpdatePattern::new(frame.quality.update, frame.quality.update_order);
+        why.yes("temporal reprojection", format!("one pixel of {} is computed in a frame", pattern.phases()));
+        return Some(pattern);
+    };
+    why.no("temporal reprojection", because);
+    None
+}
+
+fn sunshafts(frame: &Frame<'_>, has_occluder: bool, lighting: &Lighting, why: &mut Reasons) -> Option<u32> {
+    let scene = frame.scene;
+    let reach_deg = scene.sunshafts.length_deg;
+    let off_axis_deg = angle_off_view_deg(scene, lighting.towards_key);
+    let in_reach = match scene.camera.projection {
+        Projection::Perspective => off_axis_deg < half_diagonal_deg(frame) + reach_deg,
+        _ => true,
+    };
+    let because = if scene.sunshafts.strength <= 0.0 {
+        "their strength is 0".to_owned()
+    } else if lighting.key == KeyLight::None || lighting.towards_key.y < -0.02 {
+        "the light is below the horizon".to_owned()
+    } else if !has_occluder {
+        "nothing stands before the light".to_owned()
+    } else if !in_reach {
+        format!("the light is {off_axis_deg:.0}° away from the view")
+    } else if frame.output == Output::CloudsAlone {
+        "only clouds are written".to_owned()
+    } else {
+        why.yes("sunshafts", "the light is near the view, behind things");
+        return Some(frame.quality.shaft_samples);
+    };
+    why.no("sunshafts", because);
+    None
+}
+
+fn stars(lighting: &Lighting, why: &mut Reasons) -> bool {
+    let night = lighting.towards_sun.y < -0.12;
+    why.either(night, "stars", "the sun is far below the horizon", "the sky is too bright");
+    night
+}
+
+/// Half the angle across the picture's diagonal.
+fn half_diagonal_deg(frame: &Frame<'_>) -> f32 {
+    let [width, height] = frame.render_size().map(|side| side as f32);
+    let tan = (frame.scene.camera.field_of_view_deg * 0.5).to_radians().tan();
+    (tan * (1.0 + (width / height).powi(2)).sqrt()).atan().to_degrees()
+}
+
+fn angle_off_view_deg(scene: &Scene, towards: glam::Vec3) -> f32 {
+    let forward = crate::scene::direction(scene.camera.pitch_deg, scene.camera.heading_deg);
+    forward.dot(towards).clamp(-1.0, 1.0).acos().to_degrees()
+}
+
+#[cfg(test)]
+mod tests;

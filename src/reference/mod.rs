@@ -4,6 +4,7 @@
 //! the shader's, so that the shader's rounding shows. Random numbers and noise ([`random`], [`noise`]) mirror the
 //! shader's `f32` and `u32` steps, so that lattice cells and hashes are the same bits.
 
+pub mod air;
 pub mod math;
 pub mod noise;
 pub mod phase;

@@ -1,10 +1,37 @@
 //! Turns a [`Frame`] into a picture.
+//!
+//! [`Renderer`] owns everything on the device. A frame is scheduled as a list of jobs by one straight function,
+//! `schedule`; then it is run at once ([`Renderer::render`]) or in slices beside a window ([`Renderer::begin`] and
+//! [`Renderer::advance`]).
 
-use std::time::Duration;
+mod bakes;
+mod blue_noise;
+mod context;
+mod interactive;
+mod output;
+pub mod pass;
+mod passes;
+mod schedule;
+pub mod shaders;
+mod targets;
+pub mod uniforms;
+mod weather;
 
-use crate::gpu::{Gpu, GpuError, PassTime, Texture, TimingSource};
-use crate::plan::FramePlan;
+use std::collections::VecDeque;
+use std::time::Instant;
+
+use crate::gpu::{Gpu, GpuError, Job, PassTime, ProgramCache, Texture, TimingSource, job};
+use crate::plan::{FramePlan, HistoryKey};
 use crate::scene::Frame;
+
+use bakes::Bakes;
+use context::Pace;
+use pass::sky::SkyTables;
+use targets::Targets;
+use uniforms::Eye;
+use weather::WeatherMap;
+
+pub use output::{Counts, LinearImage};
 
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -40,7 +67,7 @@ pub struct FrameReport {
 pub enum Progress {
     /// Nothing is under way.
     Idle,
-    /// Its shaders are being compiled on another thread; the last picture stays.
+    /// Its shaders are being compiled on another thread; the last picture stays. Begin it again in a moment.
     Compiling,
     /// Some of its work is done or under way.
     Working,
@@ -48,29 +75,79 @@ pub enum Progress {
     Finished(Box<FrameReport>),
 }
 
-/// Linear light of a finished frame, row by row from the top.
+/// The picture that the next one may take over from.
 #[derive(Clone, Debug)]
-pub struct LinearImage {
-    /// Width and height in pixels.
-    pub size: [u32; 2],
-    /// Red, green, blue in working units, and opacity: 1, or the clouds' own for [`crate::scene::Output::CloudsAlone`].
-    pub rgba: Vec<[f32; 4]>,
-    /// Distance to the cloud weighted by what it adds to the picture, in metres.
-    pub distance_m: Vec<f32>,
-    /// Multiply by this to get cd/m².
-    pub candela_per_unit: f32,
+struct History {
+    key: HistoryKey,
+    eye: Eye,
+    time_secs: f64,
+    /// Which phase of the update pattern it computed.
+    phase: u32,
+    /// Which of the two history targets holds it.
+    side: usize,
+}
+
+/// A frame that was scheduled and is not finished.
+#[derive(Debug)]
+struct Pending {
+    plan: FramePlan,
+    history: Option<History>,
+    display: Texture,
+    started: Instant,
+    times: Vec<PassTime>,
 }
 
 /// Owns everything on the device.
 #[derive(Debug)]
 pub struct Renderer {
     gpu: Gpu,
+    programs: ProgramCache,
+    pace: Pace,
+    sky: SkyTables,
+    bakes: Bakes,
+    weather: WeatherMap,
+    targets: Option<Targets>,
+    history: Option<History>,
+    /// The last finished picture.
+    shown: Option<Texture>,
+    /// Which display target the next picture goes to.
+    display_side: usize,
+    candela_per_unit: f32,
+    /// Interactive work: jobs to do, the slice under way, and the frame they belong to.
+    queue: VecDeque<Job>,
+    /// How many jobs at the front of the queue make bakes, which must not be dropped.
+    bake_jobs: usize,
+    slice: Option<interactive::Slice>,
+    pending: Option<Pending>,
+    is_compiling: bool,
+    last_plan: Option<FramePlan>,
 }
 
 impl Renderer {
     /// A renderer without a picture.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] if the device cannot hold the sky tables.
     pub fn new(gpu: &Gpu) -> Result<Self, RenderError> {
-        Ok(Self { gpu: gpu.clone() })
+        Ok(Self {
+            gpu: gpu.clone(),
+            programs: ProgramCache::new(gpu, shaders::TABLE),
+            pace: Pace::default(),
+            sky: SkyTables::new(gpu)?,
+            bakes: Bakes::new(gpu)?,
+            weather: WeatherMap::new(),
+            targets: None,
+            history: None,
+            shown: None,
+            display_side: 0,
+            candela_per_unit: 1.0,
+            queue: VecDeque::new(),
+            bake_jobs: 0,
+            slice: None,
+            pending: None,
+            is_compiling: false,
+            last_plan: None,
+        })
     }
 
     /// The device it renders on.
@@ -79,40 +156,53 @@ impl Renderer {
     }
 
     /// Renders the frame whole and waits for it.
+    ///
+    /// # Errors
+    /// [`RenderError`] if the device fails or an image of the weather map cannot be used.
     pub fn render(&mut self, frame: &Frame<'_>) -> Result<FrameReport, RenderError> {
+        self.finish_interactive()?;
+        // Long jobs are cut so that no driver's watchdog ends them; software drivers have none.
+        let slice_ms = if self.gpu.is_software() { None } else { Some(200.0) };
         let plan = FramePlan::new(frame);
-        Ok(FrameReport { plan, passes: Vec::new(), source: TimingSource::of(&self.gpu), total_ms: 0.0 })
+        let (jobs, _) = self.schedule(frame, plan, slice_ms, None)?;
+        let started = Instant::now();
+        let times = job::run(&self.gpu, &jobs)?;
+        if let Some(pending) = &mut self.pending {
+            pending.started = started;
+            pending.times = times;
+        }
+        let mut report = self.complete().unwrap_or_else(|| unreachable!("schedule leaves a pending frame"));
+        report.source = TimingSource::of(&self.gpu);
+        Ok(report)
     }
 
-    /// Starts an interactive frame. What was under way is dropped; what was finished stays on display.
-    pub fn begin(&mut self, frame: &Frame<'_>) -> Result<(), RenderError> {
-        let _ = frame;
-        Ok(())
+    /// Makes the pending frame the last finished one.
+    fn complete(&mut self) -> Option<FrameReport> {
+        let pending = self.pending.take()?;
+        self.history = pending.history;
+        self.shown = Some(pending.display);
+        self.display_side = 1 - self.display_side;
+        self.last_plan = Some(pending.plan.clone());
+        Some(FrameReport {
+            plan: pending.plan,
+            passes: pending.times,
+            source: TimingSource::SerialisedHost,
+            total_ms: pending.started.elapsed().as_secs_f64() * 1e3,
+        })
     }
 
-    /// Sends the next slice of work to the device if it has finished the one before; never waits for it.
-    pub fn advance(&mut self, slice: Duration) -> Result<Progress, RenderError> {
-        let _ = slice;
-        Ok(Progress::Idle)
+    /// Forgets the picture before, as after a cut.
+    pub fn forget_history(&mut self) {
+        self.history = None;
     }
 
     /// The last finished picture: `Rgba8Unorm`, display-encoded. `None` before the first.
     pub fn display(&self) -> Option<&Texture> {
-        None
-    }
-
-    /// The last finished picture as bytes, for a file.
-    pub fn display_rgba8(&self) -> Result<([u32; 2], Vec<u8>), RenderError> {
-        Ok(([0, 0], Vec::new()))
-    }
-
-    /// The light of the last frame rendered with a linear output.
-    pub fn linear(&self) -> Result<LinearImage, RenderError> {
-        Ok(LinearImage { size: [0, 0], rgba: Vec::new(), distance_m: Vec::new(), candela_per_unit: 1.0 })
+        self.shown.as_ref()
     }
 
     /// Device memory held by textures, in bytes.
     pub fn memory_bytes(&self) -> u64 {
-        0
+        self.bakes.bytes() + self.weather.bytes() + self.sky.bytes() + self.targets.as_ref().map_or(0, Targets::bytes)
     }
 }

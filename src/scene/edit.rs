@@ -3,7 +3,7 @@
 use super::bounds::{Fault, colour_fault, count_fault, float_fault, range_phrase};
 use super::nearest::did_you_mean;
 use super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
-use super::{MAX_LAYERS, MapLayer};
+use super::{MAX_LAYERS, MapLayer, Quality, Scene};
 
 /// Why a parameter was not set. The scene is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -50,6 +50,23 @@ pub enum EditError {
         /// The greatest index that may be used.
         greatest: usize,
     },
+    /// The values are sound alone but not together.
+    #[error("{0}")]
+    Rule(String),
+}
+
+impl EditError {
+    fn below(mut self, prefix: &str) -> Self {
+        match &mut self {
+            Self::UnknownKey { key, .. }
+            | Self::Group { key, .. }
+            | Self::WrongType { key, .. }
+            | Self::OutOfRange(Fault { key, .. })
+            | Self::Index { key, .. } => key.insert_str(0, prefix),
+            Self::NoEquals(_) | Self::Rule(_) => {}
+        }
+        self
+    }
 }
 
 /// Takes `key=value` apart.
@@ -59,6 +76,22 @@ pub enum EditError {
 pub fn split(assignment: &str) -> Result<(&str, &str), EditError> {
     let (key, value) = assignment.split_once('=').ok_or_else(|| EditError::NoEquals(assignment.to_owned()))?;
     Ok((key.trim(), value.trim()))
+}
+
+/// Applies `key=value` assignments in order; keys that begin with `quality.` go to the quality.
+///
+/// # Errors
+/// See [`EditError`]; the assignments before the refused one stay applied.
+pub fn apply(assignments: &[String], scene: &mut Scene, quality: &mut Quality) -> Result<(), EditError> {
+    const QUALITY: &str = "quality.";
+    for assignment in assignments {
+        let (key, value) = split(assignment)?;
+        match key.strip_prefix(QUALITY) {
+            Some(key) => set(quality, key, value).map_err(|error| error.below(QUALITY))?,
+            None => set(scene, key, value)?,
+        }
+    }
+    scene.problems().into_iter().next().map_or(Ok(()), |problem| Err(EditError::Rule(problem)))
 }
 
 /// Sets the parameter with that key to the value written as in a preset; a file name may go without quotes. The item
@@ -408,6 +441,20 @@ mod tests {
     }
 
     #[test]
+    fn assignments_reach_scene_and_quality() {
+        let (mut scene, mut quality) = (Scene::default(), Quality::default());
+        let mut apply = |assignments: &[&str]| {
+            let assignments: Vec<String> = assignments.iter().map(|text| (*text).to_owned()).collect();
+            apply(&assignments, &mut scene, &mut quality).map_err(|error| error.to_string())
+        };
+        assert_eq!(apply(&["weather.coverage=0.9", "quality.view_steps = 99"]), Ok(()));
+        assert_eq!(apply(&["quality.view_steps=1"]), Err("quality.view_steps = 1 is outside 4 ..= 1024".to_owned()));
+        assert!(apply(&["weather.coverage"]).is_err_and(|error| error.contains("key=value")), "no value");
+        assert!(apply(&["layers.0.top_m=100"]).is_err_and(|error| error.contains("lies below")), "rules hold here too");
+        assert_eq!((scene.weather.coverage, quality.view_steps), (0.9, 99));
+    }
+
+    #[test]
     fn refusals_name_key_value_and_range_and_change_nothing() {
         let before = Scene::default();
         let mut scene = before.clone();
@@ -418,7 +465,11 @@ mod tests {
             ("layers.0.base_m", "high", "layers.0.base_m = high cannot be read; expected a number"),
             ("layers.0.model", "thesis", "layers.0.model = thesis cannot be read; expected one of Profile, Thesis"),
             ("layers.3.base_m", "1", "layers: the list has 1 item(s), so the index may be at most 1"),
-            ("layers.0.phase", "1", "layers.0.phase is a group of parameters; set one of them, such as layers.0.phase.kind"),
+            (
+                "layers.0.phase",
+                "1",
+                "layers.0.phase is a group of parameters; set one of them, such as layers.0.phase.kind",
+            ),
             ("sun.day", "2.5", "sun.day = 2.5 cannot be read; expected a whole number in 1 ..= 366"),
             ("sun.colour", "(1,2,-3)", "sun.colour = (1, 2, -3) is outside 0 ..= 100 for each component"),
         ] {

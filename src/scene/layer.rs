@@ -9,6 +9,8 @@ choices! {
         Profile ("Profile"),
         /// Map times height function times four-channel Worley noise (Koblížek 2019, equations 2.1 and 2.2).
         Thesis ("Thesis"),
+        /// The same everywhere the map has cloud: fog, haze, and tests against closed forms.
+        Uniform ("Uniform"),
     }
 }
 

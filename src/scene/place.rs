@@ -62,6 +62,8 @@ choices! {
         Perspective ("Perspective"),
         /// All directions: longitude across, latitude down; the middle looks along the camera's heading.
         Equirect ("Equirectangular"),
+        /// The upper half of all directions: longitude across, the zenith at the top, the horizon at the bottom.
+        Dome ("Sky dome"),
     }
 }
 

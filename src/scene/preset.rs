@@ -1,7 +1,7 @@
 //! Presets: a scene in a RON file, checked field by field, and written as what differs from the defaults.
 //!
-//! A parameter's key is its path below `scene`, such as `layers.0.base_m`. Reading and writing files is done by
-//! [`crate::files`]; here is only text.
+//! A parameter's key is its path below `scene`, such as `layers.0.base_m`. Here is only text; the module `files`
+//! reads and writes the disk.
 
 mod check;
 mod locate;

@@ -12,7 +12,7 @@ struct Random {
 }
 
 impl Random {
-    /// Uniform in 0 ..= 1 (SplitMix64; Steele, Lea and Flood 2014).
+    /// Uniform in 0 ..= 1 (`SplitMix64`; Steele, Lea and Flood 2014).
     fn unit(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut bits = self.state;
@@ -31,13 +31,18 @@ impl Random {
     }
 }
 
+/// The nearest number of single precision.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
+fn narrow(number: f64) -> f32 {
+    number as f32
+}
+
 impl Visitor for Random {
     fn float(&mut self, info: &Info<f32>, value: &mut f32) {
         let Some(range) = &info.range else { return };
         let (low, high, at) = (f64::from(*range.start()), f64::from(*range.end()), self.unit());
-        let drawn =
-            if info.logarithmic && low > 0.0 { low * (high / low).powf(at) } else { low + (high - low) * at };
-        *value = (drawn as f32).clamp(*range.start(), *range.end());
+        let drawn = if info.logarithmic && low > 0.0 { low * (high / low).powf(at) } else { low + (high - low) * at };
+        *value = narrow(drawn).clamp(*range.start(), *range.end());
     }
 
     fn count(&mut self, info: &Info<u32>, value: &mut u32) {
@@ -55,7 +60,7 @@ impl Visitor for Random {
     }
 
     fn colour(&mut self, _: &Info<Colour>, value: &mut Colour) {
-        let mut part = || self.unit() as f32;
+        let mut part = || narrow(self.unit());
         *value = Colour(part(), part(), part());
     }
 

@@ -19,19 +19,22 @@ pub fn markdown() -> String {
 fn push_section(page: &mut String, title: &str, prefix: &str, entries: &[Entry]) {
     page.push_str(&format!("\n## {title}\n"));
     let group_of = |entry: &Entry| entry.key.rsplit_once('.').map_or(String::new(), |(group, _)| group.to_owned());
-    let mut group = None;
-    for entry in entries {
-        if group.as_ref() != Some(&group_of(entry)) {
-            let name = group_of(entry);
-            if !name.is_empty() {
-                page.push_str(&format!("\n### {name}\n"));
-            }
-            page.push_str("\n| key | default | allowed | meaning |\n|---|---|---|---|\n");
-            group = Some(name);
+    let mut groups: Vec<String> = Vec::new();
+    for group in entries.iter().map(group_of) {
+        if !groups.contains(&group) {
+            groups.push(group);
         }
-        let Entry { key, default, allowed, doc, unit, .. } = entry;
-        let default = if default.is_empty() { "none".to_owned() } else { format!("{default}{}", unit.suffix()) };
-        page.push_str(&format!("| `{prefix}{key}` | {default} | {allowed} | {} |\n", doc.replace('|', "\\|")));
+    }
+    for group in groups {
+        if !group.is_empty() {
+            page.push_str(&format!("\n### {group}\n"));
+        }
+        page.push_str("\n| key | default | allowed | meaning |\n|---|---|---|---|\n");
+        for entry in entries.iter().filter(|entry| group_of(entry) == group) {
+            let Entry { key, default, allowed, doc, unit, .. } = entry;
+            let default = if default.is_empty() { "none".to_owned() } else { format!("{default}{}", unit.suffix()) };
+            page.push_str(&format!("| `{prefix}{key}` | {default} | {allowed} | {} |\n", doc.replace('|', "\\|")));
+        }
     }
 }
 

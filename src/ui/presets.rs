@@ -10,12 +10,14 @@ use crate::app::document::Document;
 /// One preset in the list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
-    /// Name for people; for a built-in one also the name to load it by.
+    /// Name for people.
     pub name: String,
     /// What one sees.
     pub description: String,
-    /// The file; `None` for a built-in one.
-    pub path: Option<PathBuf>,
+    /// The file, or the short name of a built-in one.
+    pub source: PathBuf,
+    /// Whether it is the program's own.
+    pub is_builtin: bool,
 }
 
 /// What there is to choose from.
@@ -58,17 +60,17 @@ fn entries(ui: &mut Ui, entries: &[Entry], search: &str, document: &Document, ac
         if !text.contains(search) {
             continue;
         }
-        let current = document.path() == entry.path.as_ref() && document.preset().name == entry.name;
+        let current = match document.path() {
+            Some(path) => *path == entry.source,
+            None => entry.is_builtin && document.preset().name == entry.name,
+        };
         let button = egui::Button::selectable(current, entry.name.as_str()).truncate().min_size([ui.available_width(), 0.0].into());
         let mut response = ui.add(button);
         if !entry.description.is_empty() {
             response = response.on_hover_text(entry.description.as_str());
         }
         if response.clicked() {
-            actions.push(Action::Ask(match &entry.path {
-                Some(path) => Request::Open(path.clone()),
-                None => Request::OpenBuiltin(entry.name.clone()),
-            }));
+            actions.push(Action::Ask(Request::Open(entry.source.clone())));
         }
     }
 }

@@ -378,7 +378,8 @@ mod tests {
     fn broken_text_is_an_error_with_a_place() {
         for (text, at, word) in [
             ("(a: 1", 5, "end of the file"),
-            ("(a 1)", 3, "`:`"),
+            ("(a 1)", 3, "`,`"),
+            ("(a: 1, b 2)", 9, "`:`"),
             ("(a: 1 b: 2)", 6, "`,`"),
             ("(a: [1, 2)", 9, "`]`"),
             ("(a: \"x)", 4, "quote"),

@@ -59,16 +59,25 @@ fn values_out_of_range_are_named_with_place_and_range() {
 #[test]
 fn every_kind_of_wrong_is_told_apart() {
     for (text, words) in [
-        ("(version: 2, scene: (sun: (elevation: 5)))", "1:28: there is no parameter sun.elevation; did you mean elevation_deg?"),
+        (
+            "(version: 2, scene: (sun: (elevation: 5)))",
+            "1:28: there is no parameter sun.elevation; did you mean elevation_deg?",
+        ),
         ("(version: 2, nam: \"x\")", "1:14: there is no parameter nam; did you mean name?"),
         ("(version: 2, scene: (weather: 5))", "weather is `5`, but must be a group"),
         ("(version: 2, scene: (layers: ()))", "layers is a group of fields, but must be a list"),
-        ("(version: 2, scene: (layers: [(model: Nice)]))", "layers.0.model is `Nice`, but must be one of Profile, Thesis"),
+        (
+            "(version: 2, scene: (layers: [(model: Nice)]))",
+            "layers.0.model is `Nice`, but must be one of Profile, Thesis",
+        ),
         ("(version: 2, scene: (sun: (disc: 1)))", "sun.disc is `1`, but must be true or false"),
         ("(version: 2, scene: (sun: (day: 2.5)))", "sun.day is `2.5`, but must be a whole number"),
         ("(version: 2, scene: (sun: (colour: 1)))", "sun.colour is `1`, but must be a colour"),
         ("(version: 2, scene: (sun: (colour: (1, 2, NaN))))", "is not a finite number"),
-        ("(version: 2, scene: (weather: (layers: [(image: 5)])))", "weather.layers.0.image is `5`, but must be a file name"),
+        (
+            "(version: 2, scene: (weather: (layers: [(image: 5)])))",
+            "weather.layers.0.image is `5`, but must be a file name",
+        ),
         ("(version: 2, quality: Best)", "quality is `Best`, but must be one of Draft, Preview, High, Final"),
         ("(version: 2, tags: [1])", "tags is `1`, but must be a list of strings"),
         ("(version: 2, name: 5)", "name is `5`, but must be a string"),
@@ -131,4 +140,30 @@ fn files_of_version_1_load() {
     expected.scene.weather.coverage = 0.125;
     expected.scene.sun.elevation_deg = 7.5;
     assert_eq!(load("summit.ron"), expected);
+}
+
+#[test]
+fn damaged_text_is_refused_without_a_panic() {
+    let text = super::super::builtin::BUILTINS[0].ron;
+    for end in (0..text.len()).filter(|end| text.is_char_boundary(*end)) {
+        let refused = Preset::from_ron(&text[..end], "x.ron");
+        assert!(refused.is_err() || text[end..].trim().is_empty(), "cut at {end}");
+    }
+    for at in 0..text.len() {
+        for other in [b'(', b')', b'"', b',', b'9', b'r', b'/', b'\n', b'-'] {
+            let mut bytes = text.as_bytes().to_vec();
+            bytes[at] = other;
+            if let Ok(text) = std::str::from_utf8(&bytes) {
+                // Either outcome is right, as long as there is one.
+                let _ = Preset::from_ron(text, "x.ron");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_text_comes_back() {
+    let text = "\u{1}\u{7f}\u{85}\u{2028}\u{feff}\\'\"\n\r\t\0 雲 {}() // /* */";
+    let preset = Preset { description: text.to_owned(), tags: vec![text.to_owned()], ..Preset::default() };
+    assert_eq!(Preset::from_ron(&preset.to_ron(), "x.ron"), Ok(preset));
 }

@@ -11,7 +11,17 @@ pub(super) fn fields(root: &mut impl Params, depth: usize) -> String {
 
 /// A string in quotes, with escapes.
 pub(super) fn quoted(text: &str) -> String {
-    ron::to_string(text).unwrap_or_else(|_| format!("{text:?}"))
+    let mut quoted = String::from("\"");
+    for letter in text.chars() {
+        match letter {
+            '"' | '\\' => quoted.extend(['\\', letter]),
+            '\n' => quoted.push_str("\\n"),
+            control if control.is_control() => quoted.extend(control.escape_unicode()),
+            other => quoted.push(other),
+        }
+    }
+    quoted.push('"');
+    quoted
 }
 
 struct Writer {

@@ -1,0 +1,71 @@
+// The program's own density model: bodies from the map, a height profile by cloud type, billows, erosion.
+//
+// All functions take values that were already read from textures, so that the march, the bound and the tests share
+// them. Heights h are 0 at the layer's base and 1 at its top. The chain is: profile -> billowed -> eroded -> density.
+#import "cloud/weather.wgsl"
+#import "common/math.wgsl"
+
+// Mean of the erosion noise, to which it fades with distance.
+const MEAN_EROSION: f32 = 0.5;
+
+// Height of the tops over the layer, 0..1: cumulus towers with its body, the others stay flat.
+fn top_height(weather: Weather, layer: LayerUniforms) -> f32 {
+  let lift = 1.0 - layer.top_variation * (1.0 - weather.variation);
+  let towering = mix(0.4, 1.0, sqrt(weather.body)) * lift;
+  let flat = mix(0.75, 1.0, weather.body);
+  return max(dot(weather.types, vec3f(towering, 0.30 * flat, 0.55 * flat)), 0.02);
+}
+
+// How much cloud the map allows at a height, 0..1.
+fn height_profile(weather: Weather, layer: LayerUniforms, h: f32) -> f32 {
+  let spread = layer.anvil * smoothstep(0.55, 0.85, h);
+  let body = mix(weather.body, sqrt(weather.body), spread);
+  let hh = h / top_height(weather, layer);
+  let base = smoothstep(0.0, layer.base_ramp, h);
+  let shoulder = mix(0.62, 0.25, weather.types.x) + 0.3 * spread;
+  let crown = 1.0 - smoothstep(min(shoulder, 0.9), 1.0, hh);
+  return body * base * sqrt(max(crown, 0.0));
+}
+
+// Signed field after the large noise: positive inside. Noise is added, not multiplied, and its amplitude falls where
+// the profile is thin, which keeps pebbles from floating beside the bodies.
+fn billowed(profile: f32, noise: vec4f, weather: Weather, layer: LayerUniforms) -> f32 {
+  let billows = clamp((dot(noise.gba, vec3f(0.40, 0.35, 0.25)) - 0.28) / 0.42, 0.0, 1.0);
+  let lumps = billows * 0.8 + noise.r * 0.2;
+  let amplitude = smoothstep(0.04, 0.40, profile);
+  let strength = layer.shape_strength * dot(weather.types, vec3f(1.0, 0.7, 0.9));
+  return (1.2 * profile - 0.35 + strength * (lumps * amplitude - 0.65)) * 2.2;
+}
+
+// What erosion takes from the surface: billowy above, wispy below and where the user wants it.
+fn erosion(noise: vec4f, layer: LayerUniforms, h: f32, fade: f32) -> f32 {
+  let cells = dot(noise.rgb, vec3f(0.45, 0.33, 0.22));
+  let wisps = noise.a * 0.6 + 0.4 * cells;
+  let wispy = max(1.0 - smoothstep(0.0, 0.22, h), layer.wispiness);
+  return mix(mix(1.0 - cells, wisps, wispy), MEAN_EROSION, fade) * layer.detail_strength;
+}
+
+// The signed field after erosion; only its surface is eaten.
+fn eroded(field: f32, amount: f32) -> f32 {
+  return field - amount * (1.0 - clamp(field, 0.0, 1.0));
+}
+
+// Whether erosion can change anything at this value: 1 and above is solid, 0 and below is clear either way.
+fn near_surface(field: f32) -> bool {
+  return field < 1.0;
+}
+
+// Density 0..1. Liquid water grows with height above the base, nearly as its power 2/3 (Brenguier et al. 2000).
+fn profile_density(field: f32, layer: LayerUniforms, h: f32) -> f32 {
+  let solid = clamp(field * 2.5 * layer.sharpness, 0.0, 1.0);
+  return solid * mix(0.45, 1.0, clamp(h * 1.2, 0.0, 1.0));
+}
+
+// Never below the density anywhere in a cell whose greatest map body is given.
+fn profile_bound(greatest_body: f32, layer: LayerUniforms) -> f32 {
+  let body = mix(greatest_body, sqrt(greatest_body), layer.anvil);
+  let strength = max(layer.shape_strength, 0.0);
+  let lumps = smoothstep(0.04, 0.40, body);
+  let field = (1.2 * body - 0.35 + max(strength * (lumps - 0.65), 0.7 * strength * (lumps - 0.65))) * 2.2;
+  return clamp(field * 2.5 * layer.sharpness, 0.0, 1.0);
+}

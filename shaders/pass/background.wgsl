@@ -1,0 +1,203 @@
+// What lies behind the clouds: sky, sun and moon, and ground with hills, mountains and the shadows of clouds.
+#import "common/camera.wgsl"
+#import "common/random.wgsl"
+#import "common/shell.wgsl"
+#import "generated/BandUniforms.wgsl"
+#import "generated/CameraUniforms.wgsl"
+#import "generated/ViewUniforms.wgsl"
+#import "light/sky.wgsl"
+#if GROUND
+#import "pass/terrain.wgsl"
+#endif
+
+@group(0) @binding(0) var<uniform> view: ViewUniforms;
+@group(0) @binding(1) var<uniform> band: BandUniforms;
+@group(0) @binding(2) var<uniform> air: AirUniforms;
+@group(0) @binding(4) var sky_view: texture_2d<f32>;
+@group(0) @binding(5) var sky_transmittance: texture_2d<f32>;
+@group(0) @binding(6) var linear_repeat: sampler;
+#if GROUND
+@group(0) @binding(7) var sky_ambient: texture_2d<f32>;
+@group(0) @binding(8) var sky_aerial_light: texture_3d<f32>;
+@group(0) @binding(9) var sky_aerial_transmittance: texture_3d<f32>;
+@group(2) @binding(1) var ground_distance_out: texture_storage_2d<r32float, write>;
+#endif
+#if SHADOW
+@group(0) @binding(3) var linear_clamp: sampler;
+@group(0) @binding(10) var cloud_shadow: texture_2d<f32>;
+#endif
+#if FLOAT
+@group(2) @binding(0) var background_out: texture_storage_2d<rgba32float, write>;
+#else
+@group(2) @binding(0) var background_out: texture_storage_2d<rgba16float, write>;
+#endif
+
+fn sky_with_lights(dir: vec3f) -> vec3f {
+  let altitude = max(view.camera.eye.y, 0.0);
+  var light = sky_radiance(sky_view, linear_repeat, air, dir);
+  let discs = sun_disc(air, dir, view.pixel_angle) + moon_disc(air, dir, view.pixel_angle);
+  if (max(discs.x, max(discs.y, discs.z)) > 0.0) {
+    light += discs * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
+  }
+#if STARS
+  light += stars(dir) * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
+#endif
+  return light;
+}
+
+#if STARS
+// A few thousand points on a cube of directions, brighter ones rarer.
+fn stars(dir: vec3f) -> vec3f {
+  let a = abs(dir);
+  let major = max(a.x, max(a.y, a.z));
+  let q = dir / major * 90.0;
+  let cell = vec3i(floor(q + 0.5));
+  let random = hash_cell(cell, 77u);
+  let centre = normalize(vec3f(cell) + (random - 0.5) * 0.7);
+  let miss = length(dir - centre) / max(view.pixel_angle, 4e-4);
+  let present = step(0.86, unit_from_bits(hash_cell_bits(cell, 78u).x));
+  let magnitude = pow(random.y, 9.0) + 0.03;
+  let tint = mix(vec3f(1.0, 0.82, 0.66), vec3f(0.72, 0.85, 1.1), random.z);
+  return tint * present * magnitude * view.star_radiance * exp(-miss * miss * 1.6) * step(0.0, dir.y);
+}
+#endif
+
+#if GROUND
+fn ground_height(p: vec2f) -> f32 {
+#if TERRAIN
+  return terrain_height(p, linear_repeat);
+#else
+  return 0.0;
+#endif
+}
+
+#if TERRAIN
+fn clearance_at(p: vec3f) -> f32 {
+  return altitude_at(p, ground.planet_radius_m) - ground_height(p.xz);
+}
+
+// Distance to the relief between start and end, or -1: steps by clearance, then halves the last one.
+fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
+  var t = start;
+  var before = start;
+  var is_hit = false;
+  for (var i = 0u; i < 96u; i++) {
+    if (t >= end) {
+      break;
+    }
+    let clearance = clearance_at(origin + dir * t);
+    if (clearance < 0.001 * t) {
+      is_hit = true;
+      break;
+    }
+    before = t;
+    t += max(clearance * 0.7, 4.0 + 0.006 * t);
+  }
+  for (var k = 0u; k < 6u; k++) {
+    let middle = 0.5 * (before + t);
+    let is_above = clearance_at(origin + dir * middle) > 0.0;
+    before = select(before, middle, is_above);
+    t = select(middle, t, is_above);
+  }
+  return select(-1.0, max(t, 0.1), is_hit);
+}
+#endif
+
+// Distance to the ground along a ray, or -1.
+fn ground_hit(origin: vec3f, dir: vec3f) -> f32 {
+  let sea = shell_roots(origin, dir, 0.0, ground.planet_radius_m);
+  let is_down = sea.y > 0.0 && dot(origin, dir) + ground.planet_radius_m * dir.y < 0.0;
+  let sea_distance = select(-1.0, max(sea.x, 0.0), is_down);
+#if TERRAIN
+  let ceiling = shell_roots(origin, dir, ground.highest_m, ground.planet_radius_m);
+  let is_above = altitude_at(origin, ground.planet_radius_m) > ground.highest_m;
+  let start = select(0.0, max(ceiling.x, 0.0), is_above);
+  let end = min(select(max(ceiling.y, 0.0), sea_distance, is_down), ground.reach_m);
+  let relief = relief_hit(origin, dir, start, select(-1.0, end, ceiling.y > 0.0));
+  return select(sea_distance, relief, relief >= 0.0);
+#else
+  return sea_distance;
+#endif
+}
+
+fn ground_normal(p: vec3f, distance_m: f32) -> vec3f {
+#if TERRAIN
+  let e = max(20.0, distance_m * 0.004);
+  let east = ground_height(p.xz + vec2f(e, 0.0)) - ground_height(p.xz - vec2f(e, 0.0));
+  let south = ground_height(p.xz + vec2f(0.0, e)) - ground_height(p.xz - vec2f(0.0, e));
+  return normalize(vec3f(-east, 2.0 * e, -south));
+#else
+  return up_at(p, ground.planet_radius_m);
+#endif
+}
+
+fn ground_albedo(p: vec3f, normal: vec3f, distance_m: f32) -> vec3f {
+  var albedo = ground.albedo;
+#if TERRAIN
+  let uv = p.xz * ground.tile_from_world.z + ground.tile_from_world.xy;
+  let patches = textureSampleLevel(terrain_map, linear_repeat, uv * 5.0, 0.0).z;
+  let fields = textureSampleLevel(terrain_map, linear_repeat, uv * 23.0, 0.0).z;
+  let fade = exp(-distance_m / 25000.0);
+  albedo *= 0.75 + 0.5 * patches + (fields - 0.5) * 0.5 * fade;
+  let height = ground_height(p.xz);
+  let rocky = smoothstep(0.90, 0.72, normal.y) + smoothstep(0.35, 0.8, height / max(ground.mountains_m, 1.0));
+  albedo = mix(albedo, ground.rock, clamp(rocky, 0.0, 1.0) * step(1.0, ground.mountains_m));
+#endif
+  return albedo;
+}
+
+#if SHADOW
+// Share of the key light that cloud lets through to a place on the ground.
+fn light_through_cloud(p: vec3f) -> f32 {
+  let foot = p - ground.towards_light * (p.y / max(ground.towards_light.y, 0.05));
+  let uv = foot.xz * ground.shadow_from_world.z + ground.shadow_from_world.xy;
+  let edge = clamp((0.5 - max(abs(uv.x - 0.5), abs(uv.y - 0.5))) * 8.0, 0.0, 1.0);
+  let mapped = textureSampleLevel(cloud_shadow, linear_clamp, uv, 0.0).x;
+  return mix(1.0, mix(ground.mean_shadow, mapped, edge), ground.shadow_strength);
+}
+#endif
+
+fn ground_light(p: vec3f, distance_m: f32) -> vec3f {
+  let normal = ground_normal(p, distance_m);
+  let altitude = max(altitude_at(p, ground.planet_radius_m), 0.0);
+  let cosine = light_cos_zenith(p, ground.towards_light, ground.planet_radius_m);
+  var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
+#if SHADOW
+  key *= light_through_cloud(p);
+#endif
+  let sky = textureLoad(sky_ambient, vec2u(3u, 0u), 0).rgb * (0.6 + 0.4 * normal.y);
+  return ground_albedo(p, normal, distance_m) * (key * max(dot(normal, ground.towards_light), 0.0) / PI + sky);
+}
+#endif
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+  let pixel = vec2u(id.x, id.y + band.first_row);
+  if (any(pixel >= view.size) || id.y >= band.rows) {
+    return;
+  }
+  let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+#if GROUND
+  var eye = view.camera.eye;
+#if TERRAIN
+  // An eye inside a hill sees from above it.
+  eye.y = max(eye.y, ground_height(vec2f(0.0)) + 2.0);
+#endif
+  let hit = ground_hit(eye, dir);
+  var light: vec3f;
+  if (hit >= 0.0) {
+    let ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, hit);
+    light = ground_light(eye + dir * hit, hit) * ahead.transmittance + ahead.light;
+  } else {
+    light = sky_with_lights(dir);
+  }
+  textureStore(ground_distance_out, pixel, vec4f(hit, 0.0, 0.0, 0.0));
+#else
+  let light = sky_with_lights(dir);
+#endif
+#if FLOAT
+  textureStore(background_out, pixel, vec4f(max(light, vec3f(0.0)), 1.0));
+#else
+  textureStore(background_out, pixel, sanitise4(vec4f(light, 1.0)));
+#endif
+}

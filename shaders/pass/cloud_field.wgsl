@@ -1,0 +1,230 @@
+// The density field with its textures bound: the one place where clouds are read.
+#import "cloud/profile.wgsl"
+#import "cloud/thesis.wgsl"
+#import "cloud/weather.wgsl"
+#import "common/shell.wgsl"
+#import "generated/LayerUniforms.wgsl"
+#import "generated/SceneUniforms.wgsl"
+
+const MODEL_PROFILE: u32 = 0u;
+const MODEL_THESIS: u32 = 1u;
+const MODEL_UNIFORM: u32 = 2u;
+const DOMAIN_SHELL: u32 = 0u;
+const DOMAIN_FLAT: u32 = 1u;
+const DOMAIN_BOX: u32 = 2u;
+const EDGE_REPEAT: u32 = 0u;
+const EDGE_CLAMP: u32 = 1u;
+
+override DOMAIN: u32 = 0u;
+override LAYERS: u32 = 1u;
+
+@group(1) @binding(0) var<uniform> scene: SceneUniforms;
+@group(1) @binding(1) var weather_map: texture_2d<f32>;
+@group(1) @binding(2) var linear_repeat: sampler;
+#if PROFILE
+@group(1) @binding(3) var shape_noise: texture_3d<f32>;
+#endif
+#if THESIS
+@group(1) @binding(4) var worley_noise: texture_3d<f32>;
+#endif
+#if DETAIL
+@group(1) @binding(5) var detail_noise: texture_3d<f32>;
+#endif
+#if CURL
+@group(1) @binding(6) var curl_noise: texture_2d<f32>;
+#endif
+
+// How a place is read: what Quality leaves out for speed. Truths read everything at level 0.
+struct Reading {
+  // Mip level of the large noise; the small one follows.
+  level: f32,
+  // Whether the small noise is read; its mean stands in otherwise.
+  detail: bool,
+  // How far the small noise has faded to its mean, 0..1.
+  fade: f32,
+}
+
+#if COUNT
+var<private> counted_reads: u32;
+#endif
+
+fn count_read() {
+#if COUNT
+  counted_reads += 1u;
+#endif
+}
+
+fn altitude_of(p: vec3f) -> f32 {
+  if (DOMAIN == DOMAIN_SHELL) {
+    return altitude_at(p, scene.planet_radius_m);
+  }
+  return p.y;
+}
+
+// Where a ray can meet cloud at all.
+fn domain_segments(p: vec3f, dir: vec3f) -> Segments {
+  switch (DOMAIN) {
+    case DOMAIN_FLAT: {
+      return slab_segments(p, dir, scene.lowest_m, scene.highest_m);
+    }
+    case DOMAIN_BOX: {
+      return box_segments(p, dir, scene.box_min, scene.box_max);
+    }
+    default: {
+      return shell_segments(p, dir, scene.lowest_m, scene.highest_m, scene.planet_radius_m);
+    }
+  }
+}
+
+// Distance from a place inside the domain to where a ray leaves it for good.
+fn domain_exit(p: vec3f, dir: vec3f) -> f32 {
+  switch (DOMAIN) {
+    case DOMAIN_FLAT: {
+      return slab_segments(p, dir, scene.lowest_m, scene.highest_m).first.y;
+    }
+    case DOMAIN_BOX: {
+      return box_segments(p, dir, scene.box_min, scene.box_max).first.y;
+    }
+    default: {
+      return max(shell_roots(p, dir, scene.highest_m, scene.planet_radius_m).y, 0.0);
+    }
+  }
+}
+
+fn map_texel(layer: LayerUniforms, p: vec2f, h: f32) -> vec4f {
+  var uv = (p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
+  if (scene.map_edge == EDGE_CLAMP) {
+    uv = clamp(uv, vec2f(0.001), vec2f(0.999));
+  } else if (scene.map_edge != EDGE_REPEAT && any(abs(uv - 0.5) > vec2f(0.5))) {
+    return vec4f(0.0);
+  }
+  count_read();
+  return textureSampleLevel(weather_map, linear_repeat, uv, 0.0);
+}
+
+fn weather_at(layer: LayerUniforms, p: vec2f, h: f32) -> Weather {
+  var bias = layer.body_bias;
+#if FRONT
+  let ahead = (dot(p, scene.front.xy) - scene.front.w) * scene.front.z + 0.5;
+  bias = mix(bias, layer.body_bias_beyond, smoothstep(0.0, 1.0, ahead));
+#endif
+  return weather_from_texel(map_texel(layer, p, h), layer, bias);
+}
+
+#if DETAIL
+fn detail_texel(layer: LayerUniforms, p: vec3f, h: f32, level: f32) -> vec4f {
+  var q = p * layer.detail_from_world.w + layer.detail_from_world.xyz;
+#if CURL
+  if (layer.curl_from_world.w > 0.0) {
+    count_read();
+    let uv = (p.xz + p.y * vec2f(0.37, 0.19)) * layer.curl_from_world.z + layer.curl_from_world.xy;
+    let flow = textureSampleLevel(curl_noise, linear_repeat, uv, 0.0).xyz;
+    q += flow * layer.curl_from_world.w * (1.0 - 0.7 * h);
+  }
+#endif
+  count_read();
+  return textureSampleLevel(detail_noise, linear_repeat, q, level);
+}
+#endif
+
+#if PROFILE
+fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
+  let weather = weather_at(layer, p.xz, h);
+  let profile = height_profile(weather, layer, h);
+  if (profile < 0.02) {
+    return 0.0;
+  }
+  count_read();
+  let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
+  var field = billowed(profile, textureSampleLevel(shape_noise, linear_repeat, tile, reading.level), weather, layer);
+  if (field <= 0.0) {
+    return 0.0;
+  }
+  if (near_surface(field) && layer.detail_strength > 0.0) {
+    var amount = MEAN_EROSION * layer.detail_strength;
+#if DETAIL
+    if (reading.detail) {
+      amount = erosion(detail_texel(layer, p, h, reading.level), layer, h, reading.fade);
+    }
+#endif
+    field = eroded(field, amount);
+  }
+  return profile_density(field, layer, h);
+}
+#endif
+
+#if THESIS
+fn thesis_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
+  let weather = weather_at(layer, p.xz, h);
+  let profile = thesis_profile(weather, h);
+  if (max(profile.x, max(profile.y, profile.z)) < THESIS_THRESHOLD) {
+    return 0.0;
+  }
+  count_read();
+  let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
+  var field = thesis_field(profile, textureSampleLevel(worley_noise, linear_repeat, tile, reading.level), weather, layer);
+#if DETAIL
+  if (field > 0.0 && thesis_near_surface(field, layer) && layer.detail_strength > 0.0 && reading.detail) {
+    field = thesis_eroded(field, detail_texel(layer, p, h, reading.level), layer, reading.fade);
+  }
+#endif
+  return thesis_density(field, layer);
+}
+#endif
+
+// Density of one layer, 0..1 times the artist's multiplier.
+fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
+  let layer = scene.layers[index];
+  let h = (altitude - layer.base_m) * layer.per_thickness;
+  if (h <= 0.0 || h >= 1.0) {
+    return 0.0;
+  }
+  var density = 0.0;
+#if PROFILE
+  if (layer.model == MODEL_PROFILE) {
+    density = profile_at(layer, p, h, reading);
+  }
+#endif
+#if THESIS
+  if (layer.model == MODEL_THESIS) {
+    density = thesis_at(layer, p, h, reading);
+  }
+#endif
+#if UNIFORM
+  if (layer.model == MODEL_UNIFORM) {
+    density = weather_at(layer, p.xz, h).body;
+  }
+#endif
+  return density * layer.density_scale;
+}
+
+// Extinction of all layers at a place towards the key light, in 1/m.
+fn shadow_extinction(p: vec3f, reading: Reading) -> f32 {
+  let altitude = altitude_of(p);
+  var extinction = 0.0;
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    extinction += layer_density(i, p, altitude, reading) * layer.extinction_per_m * layer.shadow_extinction_scale;
+  }
+  return extinction;
+}
+
+// Optical depth from a place towards the key light: the only way to ask for the sun's visibility through cloud.
+// Steps grow geometrically, each with its own length (errata 6), sampled in their middle; they cover the reach, or the
+// way out of the domain where that is shorter.
+fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
+  let way = domain_exit(p, scene.towards_light);
+  var step = scene.first_light_step_m * min(1.0, way / scene.light_reach_m);
+  var t = 0.0;
+  var depth = 0.0;
+  for (var i = 0u; i < scene.light_steps; i++) {
+    let q = p + scene.towards_light * (t + 0.5 * step);
+    depth += shadow_extinction(q, Reading(level, i < scene.light_detail_steps, 0.0)) * step;
+    if (depth > 24.0) {
+      break;
+    }
+    t += step;
+    step *= scene.light_growth;
+  }
+  return depth;
+}

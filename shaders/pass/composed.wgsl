@@ -1,0 +1,26 @@
+// The finished light of a pixel: background through the clouds, the clouds, and sunshafts (their step 3).
+#import "common/math.wgsl"
+#import "generated/CameraUniforms.wgsl"
+#import "generated/ViewUniforms.wgsl"
+
+@group(0) @binding(0) var<uniform> view: ViewUniforms;
+@group(1) @binding(0) var background: texture_2d<f32>;
+#if CLOUDS
+@group(1) @binding(1) var cloud: texture_2d<f32>;
+#endif
+#if SHAFTS
+@group(1) @binding(2) var shafts_light: texture_2d<f32>;
+@group(1) @binding(3) var linear_clamp: sampler;
+#endif
+
+fn composed_light(pixel: vec2u) -> vec3f {
+  var light = textureLoad(background, pixel, 0).rgb;
+#if CLOUDS
+  let seen = textureLoad(cloud, pixel, 0);
+  light = light * seen.a + seen.rgb;
+#endif
+#if SHAFTS
+  light += textureSampleLevel(shafts_light, linear_clamp, (vec2f(pixel) + 0.5) / vec2f(view.size), 0.0).rgb;
+#endif
+  return light;
+}

@@ -1,0 +1,236 @@
+// The march: light and opacity of the clouds along each ray of this frame.
+//
+// Steps are short inside cloud and long outside, with a step back on entry (Koblížek 2019, section 3.1.4); each takes
+// the energy-conserving share 1 - exp(-x) of what is left (Hillaire 2016), from a stable series. The start is jittered
+// by the pixel alone, so that a still scene is a still picture.
+#import "cloud/scatter.wgsl"
+#import "cloud/phase.wgsl"
+#import "common/camera.wgsl"
+#import "common/update.wgsl"
+#import "generated/BandUniforms.wgsl"
+#import "pass/cloud_field.wgsl"
+#if AIR
+#import "light/sky.wgsl"
+#endif
+
+override OCTAVES: u32 = 1u;
+
+@group(0) @binding(0) var<uniform> view: ViewUniforms;
+@group(0) @binding(1) var<uniform> band: BandUniforms;
+@group(0) @binding(2) var blue_noise: texture_2d<f32>;
+#if GROUND
+@group(0) @binding(3) var ground_distance: texture_2d<f32>;
+#endif
+// Behind the scene's uniform: llvmpipe (Mesa 22.3) crashes when a dynamically indexed block is its fourth.
+@group(1) @binding(12) var<uniform> air: AirUniforms;
+@group(0) @binding(6) var sky_transmittance: texture_2d<f32>;
+@group(0) @binding(7) var sky_ambient: texture_2d<f32>;
+#if AIR
+@group(0) @binding(8) var sky_aerial_light: texture_3d<f32>;
+@group(0) @binding(9) var sky_aerial_transmittance: texture_3d<f32>;
+#endif
+#if FLOAT
+@group(2) @binding(0) var cloud_out: texture_storage_2d<rgba32float, write>;
+#else
+@group(2) @binding(0) var cloud_out: texture_storage_2d<rgba16float, write>;
+#endif
+@group(2) @binding(1) var distance_out: texture_storage_2d<r32float, write>;
+#if COUNT
+@group(2) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;
+#endif
+
+// Phase function of each layer and octave, the same all along the ray: the light is far away.
+var<private> phases: array<f32, 32>;
+
+struct Seen {
+  light: vec3f,
+  transmittance: f32,
+  // Sum of distances weighted by opacity, and the weights.
+  distance_sum: f32,
+  weight_sum: f32,
+}
+
+// The air between the eye and the sample, read again when the distance has grown by a twelfth.
+#if AIR
+var<private> air_ahead: Aerial;
+var<private> air_known_to: f32;
+
+fn air_before(dir: vec3f, distance_m: f32) -> Aerial {
+  if (distance_m > air_known_to) {
+    let middle = distance_m * 1.04;
+    air_ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, middle);
+    air_known_to = distance_m * 1.08;
+  }
+  return air_ahead;
+}
+#endif
+
+// The key light's irradiance at a place, cloud left out; read again when the place has moved far enough up or along.
+var<private> key_light: vec3f;
+var<private> key_light_altitude: f32;
+var<private> key_light_distance: f32;
+
+fn key_light_at(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
+  let moved = abs(altitude - key_light_altitude) > 150.0 || distance_m > key_light_distance;
+  if (moved) {
+    let cosine = light_cos_zenith(p, scene.towards_light, scene.planet_radius_m);
+    key_light = scene.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
+    key_light_altitude = altitude;
+    key_light_distance = distance_m * 1.1 + 500.0;
+  }
+  return key_light;
+}
+
+// Ambient light of the whole sky: from above, from below. The same all along the ray.
+var<private> ambient_above: vec3f;
+var<private> ambient_below: vec3f;
+
+struct Media {
+  extinction: f32,
+  // Light sent to the eye per unit of optical depth.
+  source: vec3f,
+}
+
+// Light of all layers at a place that has cloud.
+fn source_at(p: vec3f, altitude: f32, distance_m: f32, densities: array<f32, 4>, extinction: f32, level: f32) -> vec3f {
+  var octaves: array<f32, 8>;
+  let light = key_light_at(p, altitude, distance_m);
+  let depth = sun_optical_depth(p, level);
+#if COUNT
+  atomicAdd(&counters[2], scene.light_steps);
+#endif
+  var scale = 1.0;
+  var energy = 1.0;
+  for (var o = 0u; o <= OCTAVES; o++) {
+    octaves[o] = octave_weight(depth, scale, energy);
+    scale *= scene.octave_extinction;
+    energy *= scene.octave_energy;
+  }
+  var source = vec3f(0.0);
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    let share = densities[i] * layer.extinction_per_m / extinction * layer.albedo;
+    var scattered = 0.0;
+    for (var o = 0u; o <= OCTAVES; o++) {
+      scattered += octaves[o] * phases[i * 8u + o];
+    }
+    let h = clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0);
+    let above = ambient_share(h, scene.ambient_base_share, densities[i], scene.ambient_occlusion);
+    let around = ambient_above * above + ambient_below * (1.0 - h) * exp(-densities[i] * scene.ambient_occlusion);
+    source += share * (light * scattered * layer.sun_gain + around * layer.ambient_gain);
+  }
+  return source;
+}
+
+fn media_at(p: vec3f, distance_m: f32, reading: Reading) -> Media {
+  let altitude = altitude_of(p);
+  var densities: array<f32, 4>;
+  var extinction = 0.0;
+  for (var i = 0u; i < LAYERS; i++) {
+    let density = layer_density(i, p, altitude, reading);
+    densities[i] = density;
+    extinction += density * scene.layers[i].extinction_per_m;
+  }
+  var source = vec3f(0.0);
+  if (extinction > 0.0) {
+    source = source_at(p, altitude, distance_m, densities, extinction, reading.level);
+  }
+  return Media(extinction, source);
+}
+
+var<private> steps_left: u32;
+
+// Count of clear steps of a ray that has not met cloud yet.
+const FRESH_START: u32 = 100000u;
+
+// One stretch of the ray.
+fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
+  var seen = seen_before;
+  var t = segment.x + jitter * (scene.step_m + scene.step_growth * segment.x);
+  // Short steps since the last cloud; long ones are allowed after a few.
+  var clear_steps = FRESH_START;
+  while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
+    steps_left -= 1u;
+#if COUNT
+    atomicAdd(&counters[1], 1u);
+#endif
+    let step = scene.step_m + scene.step_growth * t;
+    let fade = clamp(t / scene.detail_distance_m, 0.0, 1.0);
+    let level = max(0.0, log2(max(step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
+    let media = media_at(origin + dir * t, t, Reading(level, fade < 1.0, fade));
+    if (media.extinction <= 0.0) {
+      clear_steps += 1u;
+      t += step * select(1.0, scene.empty_stride, clear_steps > 4u);
+    } else if (clear_steps > 4u && clear_steps < FRESH_START && scene.empty_stride > 1.0) {
+      // Entered by a long step: go back to where the first short one would have been.
+      clear_steps = 0u;
+      t -= step * (scene.empty_stride - 1.0);
+    } else {
+      clear_steps = 0u;
+      // Deep inside, where little is left to see, two short steps become one.
+      let length = select(step, 2.0 * step, seen.transmittance < 0.1);
+      let alpha = absorbed(media.extinction * min(length, max(segment.y - t + 0.5 * step, 0.0)));
+      let share = seen.transmittance * alpha;
+#if AIR
+      let ahead = air_before(dir, t);
+      seen.light += share * (ahead.transmittance * media.source + ahead.light);
+#else
+      seen.light += share * media.source;
+#endif
+      seen.distance_sum += share * t;
+      seen.weight_sum += share;
+      seen.transmittance *= 1.0 - alpha;
+      t += length;
+    }
+  }
+  return seen;
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+  let ray = vec2u(id.x, id.y + band.first_row);
+  if (any(ray >= view.ray_count) || id.y >= band.rows) {
+    return;
+  }
+  let pixel = pixel_of_ray(ray, view);
+  let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+  let origin = view.camera.eye;
+  let segments = domain_segments(origin, dir);
+  var limit = scene.max_distance_m;
+#if GROUND
+  let ground = textureLoad(ground_distance, pixel, 0).x;
+  limit = select(limit, min(limit, ground), ground >= 0.0);
+#endif
+  var seen = Seen(vec3f(0.0), 1.0, 0.0, 0.0);
+  if (segments.first.y > segments.first.x && segments.first.x < limit) {
+    for (var i = 0u; i < LAYERS; i++) {
+      let layer = scene.layers[i];
+      let shape = PhaseShape(layer.phase_kind, layer.g, layer.back_g, layer.back_mix);
+      var anisotropy = 1.0;
+      for (var o = 0u; o <= OCTAVES; o++) {
+        phases[i * 8u + o] = phase_scaled(shape, anisotropy, dir, scene.towards_light);
+        anisotropy *= scene.octave_anisotropy;
+      }
+    }
+    ambient_above = textureLoad(sky_ambient, vec2u(0u, 0u), 0).rgb * scene.ambient_top;
+    ambient_below = textureLoad(sky_ambient, vec2u(1u, 0u), 0).rgb * scene.ambient_bottom;
+    let jitter = textureLoad(blue_noise, pixel % textureDimensions(blue_noise), 0).x * view.jitter.x + view.jitter.y;
+    steps_left = scene.view_steps;
+    key_light_altitude = -1e9;
+    let first = vec2f(segments.first.x, min(segments.first.y, limit));
+    seen = march_segment(seen, origin, dir, first, jitter);
+    let second = vec2f(segments.second.x, min(segments.second.y, limit));
+    if (second.y > second.x) {
+      seen = march_segment(seen, origin, dir, second, jitter);
+    }
+  }
+  let opened = after_early_exit(seen.transmittance, scene.early_exit);
+  let transmittance = opened.x;
+  let mean_distance = select(0.0, seen.distance_sum / max(seen.weight_sum, 1e-6), seen.weight_sum > 0.0);
+  textureStore(cloud_out, ray, sanitise4(vec4f(seen.light * opened.y, transmittance)));
+  textureStore(distance_out, ray, vec4f(mean_distance, 0.0, 0.0, 0.0));
+#if COUNT
+  atomicAdd(&counters[0], 1u);
+  atomicAdd(&counters[3], counted_reads);
+#endif
+}

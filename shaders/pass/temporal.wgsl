@@ -1,0 +1,96 @@
+// Temporal reprojection (Koblížek 2019, section 3.2): this frame's rays fill their own pixels; every other pixel is
+// fetched from where its cloud was in the picture before. The position comes from the marched distance of the nearest
+// fresh ray, not from a constant height of 900 m (errata 9).
+#import "common/camera.wgsl"
+#import "common/math.wgsl"
+#import "common/update.wgsl"
+#import "generated/BandUniforms.wgsl"
+
+@group(0) @binding(0) var<uniform> view: ViewUniforms;
+@group(0) @binding(1) var<uniform> band: BandUniforms;
+@group(1) @binding(0) var fresh_cloud: texture_2d<f32>;
+@group(1) @binding(1) var fresh_distance: texture_2d<f32>;
+#if HISTORY
+@group(1) @binding(2) var history_cloud: texture_2d<f32>;
+@group(1) @binding(3) var history_distance: texture_2d<f32>;
+@group(1) @binding(4) var linear_clamp: sampler;
+#endif
+@group(2) @binding(0) var cloud_out: texture_storage_2d<rgba16float, write>;
+@group(2) @binding(1) var distance_out: texture_storage_2d<r32float, write>;
+
+// The fresh rays around a pixel, blended; stands in wherever there is no history.
+fn upsampled(pixel: vec2u) -> vec4f {
+  let place = (vec2f(pixel) - vec2f(view.update_offset)) / vec2f(view.update_block);
+  let corner = vec2i(floor(place));
+  let f = place - vec2f(corner);
+  let last = vec2i(view.ray_count) - 1;
+  let a = textureLoad(fresh_cloud, clamp(corner, vec2i(0), last), 0);
+  let b = textureLoad(fresh_cloud, clamp(corner + vec2i(1, 0), vec2i(0), last), 0);
+  let c = textureLoad(fresh_cloud, clamp(corner + vec2i(0, 1), vec2i(0), last), 0);
+  let d = textureLoad(fresh_cloud, clamp(corner + vec2i(1, 1), vec2i(0), last), 0);
+  return mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
+}
+
+#if HISTORY
+fn is_finite4(v: vec4f) -> bool {
+  return is_finite_bits(v.x) && is_finite_bits(v.y) && is_finite_bits(v.z) && is_finite_bits(v.w);
+}
+
+// History lies within what the fresh rays around it show; applied to what moved.
+fn clamped_to_fresh(value: vec4f, ray: vec2u) -> vec4f {
+  var low = vec4f(1e9);
+  var high = vec4f(-1e9);
+  let last = vec2i(view.ray_count) - 1;
+  for (var i = 0; i < 9; i++) {
+    let neighbour = clamp(vec2i(ray) + vec2i(i % 3, i / 3) - 1, vec2i(0), last);
+    let sample = textureLoad(fresh_cloud, neighbour, 0);
+    low = min(low, sample);
+    high = max(high, sample);
+  }
+  let slack = (high - low) * 0.1;
+  return clamp(value, low - slack, high + slack);
+}
+#endif
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+  let pixel = vec2u(id.x, id.y + band.first_row);
+  if (any(pixel >= view.size) || id.y >= band.rows) {
+    return;
+  }
+  let ray = ray_of_pixel(pixel, view);
+  let distance_m = textureLoad(fresh_distance, ray, 0).x;
+  var cloud: vec4f;
+  var kept_distance = distance_m;
+  if (all(pixel_of_ray(ray, view) == pixel)) {
+    cloud = textureLoad(fresh_cloud, ray, 0);
+  } else {
+#if HISTORY
+    if (view.is_still == 1u) {
+      cloud = textureLoad(history_cloud, pixel, 0);
+      kept_distance = textureLoad(history_distance, pixel, 0).x;
+      if (!is_finite4(cloud)) {
+        cloud = upsampled(pixel);
+      }
+    } else {
+      // Clear sky has no distance: far away stands in for it.
+      let reach = select(distance_m, 30000.0, distance_m <= 0.0);
+      let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+      let place = view.camera.eye + dir * reach - view.cloud_motion_m;
+      let before = picture_point(view.previous, normalize(place - view.previous.eye));
+      let inside = before.z > 0.0 && all(before.xy >= vec2f(0.0)) && all(before.xy <= vec2f(1.0));
+      cloud = upsampled(pixel);
+      if (inside) {
+        let history = textureSampleLevel(history_cloud, linear_clamp, before.xy, 0.0);
+        if (is_finite4(history)) {
+          cloud = clamped_to_fresh(history, ray);
+        }
+      }
+    }
+#else
+    cloud = upsampled(pixel);
+#endif
+  }
+  textureStore(cloud_out, pixel, sanitise4(cloud));
+  textureStore(distance_out, pixel, vec4f(kept_distance, 0.0, 0.0, 0.0));
+}

@@ -1,0 +1,299 @@
+//! `render`: one picture or a sequence of them, without a window.
+
+use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context as _, Result};
+use clap::{Args, ValueEnum};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::error::Usage;
+use super::json::Json;
+use super::{Device, Edits, args, print};
+use crate::export::ExportError;
+use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
+use crate::export::pattern::{FramePattern, parse_frame_range};
+use crate::files::{self, About, save_exr, save_png};
+use crate::gpu::Gpu;
+use crate::render::Renderer;
+use crate::scene::edit;
+use crate::scene::{Frame, Output, Preset, Projection, Quality, UpdateFraction};
+
+#[derive(Debug, Args)]
+pub(super) struct RenderArgs {
+    /// A preset (.ron), an exported .exr or .png, or the name of a built-in sky.
+    scene: PathBuf,
+    /// File to write, .png or .exr; `####` in its name stands for the frame number.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Width and height in pixels, such as `640x360`, `hd` or `4k`.
+    #[arg(long, value_parser = args::size, default_value = "1920x1080")]
+    size: [u32; 2],
+    /// How directions map onto the picture; as the sky says if not given.
+    #[arg(long)]
+    projection: Option<ProjectionArg>,
+    /// Seconds since the scene began.
+    #[arg(long, value_parser = args::finite, default_value = "0", value_name = "SECONDS", allow_negative_numbers = true)]
+    time: f64,
+    /// Camera: east,height,south,heading,pitch[,field of view] in metres and degrees.
+    #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
+    camera: Option<String>,
+    /// Frames of a sequence, such as 1-100x2 or 1,5,9; frame N shows the time `--time` + N / `--fps`.
+    #[arg(long, value_name = "RANGE")]
+    frames: Option<String>,
+    /// Frames per second of a sequence.
+    #[arg(long, value_parser = args::finite, default_value = "24")]
+    fps: f64,
+    /// Render frames of a sequence that exist already; otherwise they are left as they are.
+    #[arg(long)]
+    overwrite: bool,
+    /// Quality: draft, preview, high, final, or a .ron file; as the sky says if not given.
+    #[arg(long)]
+    quality: Option<String>,
+    /// Only clouds, with their opacity as alpha (EXR).
+    #[arg(long)]
+    clouds_only: bool,
+    /// Bits per sample of an EXR; by default half, or float where half does not reach.
+    #[arg(long)]
+    depth: Option<DepthArg>,
+    /// Codec of an EXR.
+    #[arg(long, default_value = "zip")]
+    compression: CompressionArg,
+    /// Print one line of JSON for each file.
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    edits: Edits,
+    #[command(flatten)]
+    device: Device,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ProjectionArg {
+    /// As a lens does.
+    Perspective,
+    /// All directions, longitude across and latitude down.
+    Equirect,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum DepthArg {
+    /// 16 bits.
+    Half,
+    /// 32 bits.
+    Float,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum CompressionArg {
+    /// Deflate, 16 lines at a time.
+    Zip,
+    /// Deflate, line by line.
+    Zips,
+    /// Wavelets.
+    Piz,
+    /// None.
+    None,
+}
+
+impl RenderArgs {
+    /// One picture with everything as the sky says.
+    pub(super) fn still(scene: PathBuf, output: PathBuf, edits: Edits, device: Device) -> Self {
+        Self {
+            scene,
+            output,
+            size: [1280, 720],
+            projection: None,
+            time: 0.0,
+            camera: None,
+            frames: None,
+            fps: 24.0,
+            overwrite: false,
+            quality: None,
+            clouds_only: false,
+            depth: None,
+            compression: CompressionArg::Zip,
+            json: false,
+            edits,
+            device,
+        }
+    }
+
+    fn exr_options(&self) -> ExrOptions {
+        let depth = match self.depth {
+            None => ExrDepth::Auto,
+            Some(DepthArg::Half) => ExrDepth::Half,
+            Some(DepthArg::Float) => ExrDepth::Float,
+        };
+        let compression = match self.compression {
+            CompressionArg::Zip => ExrCompression::Zip,
+            CompressionArg::Zips => ExrCompression::Zips,
+            CompressionArg::Piz => ExrCompression::Piz,
+            CompressionArg::None => ExrCompression::None,
+        };
+        ExrOptions { depth, compression }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Png,
+    Exr,
+}
+
+/// Everything decided and checked before a device is opened.
+struct Job {
+    preset: Preset,
+    quality: Quality,
+    format: Format,
+    output: Output,
+    /// File and time of each picture.
+    pictures: Vec<(PathBuf, f64)>,
+}
+
+impl Job {
+    fn new(args: &RenderArgs) -> Result<Self> {
+        let format = format_of(&args.output)?;
+        if args.clouds_only && format == Format::Png {
+            return Err(Usage("--clouds-only needs an .exr, which keeps light and opacity apart".to_owned()).into());
+        }
+        if args.depth.is_some() && format == Format::Png {
+            return Err(Usage("--depth is for .exr; a PNG has 8 bits".to_owned()).into());
+        }
+        let sky = files::open(&args.scene)?;
+        let mut quality = args::quality(args.quality.as_deref(), &sky)?;
+        // A still has no frames before it to take pixels from.
+        quality.update = UpdateFraction::Full;
+        // `--size` is the size of the file, unless `--set` says otherwise.
+        quality.resolution_scale = 1.0;
+        let mut preset = sky.preset;
+        edit::apply(&args.edits.sets, &mut preset.scene, &mut quality)?;
+        if let Some(camera) = &args.camera {
+            args::set_camera(&mut preset.scene, camera)?;
+        }
+        match args.projection {
+            None => {}
+            Some(ProjectionArg::Perspective) => preset.scene.camera.projection = Projection::Perspective,
+            Some(ProjectionArg::Equirect) => preset.scene.camera.projection = Projection::Equirect,
+        }
+        let output = match (format, args.clouds_only) {
+            (Format::Png, _) => Output::Display,
+            (Format::Exr, false) => Output::Linear,
+            (Format::Exr, true) => Output::CloudsAlone,
+        };
+        Ok(Self { preset, quality, format, output, pictures: pictures(args)? })
+    }
+}
+
+fn format_of(path: &Path) -> Result<Format> {
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    match extension.as_deref() {
+        Some("png") => Ok(Format::Png),
+        Some("exr") => Ok(Format::Exr),
+        // A device such as /dev/full has no extension; what it is matters more.
+        _ if path.exists() && !path.is_file() => Err(ExportError::NotAFile { path: path.to_owned() }.into()),
+        _ => Err(Usage(format!("-o {} ends neither in .png nor in .exr", path.display())).into()),
+    }
+}
+
+/// The files to write, with their times; those of a sequence that exist are left out.
+fn pictures(args: &RenderArgs) -> Result<Vec<(PathBuf, f64)>> {
+    let pattern = FramePattern::parse(&args.output)?;
+    let pictures = match (&args.frames, pattern.is_sequence()) {
+        (None, false) => vec![(args.output.clone(), args.time)],
+        (None, true) => return Err(Usage("-o has `#` for a frame number, but --frames is missing".to_owned()).into()),
+        (Some(_), false) => {
+            return Err(Usage("--frames needs `####` in the name of -o, such as sky.####.exr".to_owned()).into());
+        }
+        (Some(range), true) => {
+            if args.fps <= 0.0 {
+                return Err(Usage(format!("--fps {} must be above 0", args.fps)).into());
+            }
+            let frames = parse_frame_range(range).with_context(|| format!("--frames {range:?} cannot be used"))?;
+            let all = frames.into_iter().map(|frame| (pattern.path_of(frame), args.time + f64::from(frame) / args.fps));
+            all.filter(|(path, _)| args.overwrite || !is_there(path)).collect()
+        }
+    };
+    for (path, _) in &pictures {
+        check_target(path)?;
+    }
+    Ok(pictures)
+}
+
+fn is_there(path: &Path) -> bool {
+    let is_there = path.exists();
+    if is_there {
+        eprintln!("{} exists and is kept (--overwrite renders it again)", path.display());
+    }
+    is_there
+}
+
+/// Refuses what can never be written before minutes are spent on it.
+fn check_target(path: &Path) -> Result<(), ExportError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(ExportError::FolderMissing { path: path.to_owned(), folder: folder.to_owned() });
+    }
+    if path.exists() && !path.is_file() {
+        return Err(ExportError::NotAFile { path: path.to_owned() });
+    }
+    Ok(())
+}
+
+pub(super) fn run(args: &RenderArgs) -> Result<()> {
+    let job = Job::new(args)?;
+    let gpu = Gpu::headless(&args.device.choice())?;
+    let mut renderer = Renderer::new(&gpu)?;
+    let bar = progress(job.pictures.len());
+    for (path, time_secs) in &job.pictures {
+        bar.set_message(path.display().to_string());
+        let begun = Instant::now();
+        write_picture(&mut renderer, &job, args, (path, *time_secs))?;
+        let seconds = begun.elapsed().as_secs_f64();
+        bar.suspend(|| report(args, path, *time_secs, seconds))?;
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(())
+}
+
+fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, time_secs): (&Path, f64)) -> Result<()> {
+    let Job { preset, quality, output, .. } = job;
+    let frame = Frame { scene: &preset.scene, quality, size: args.size, time_secs, output: *output };
+    renderer.render(&frame).with_context(|| format!("{} could not be rendered", path.display()))?;
+    let about = About { preset, quality, time_secs };
+    match job.format {
+        Format::Png => {
+            let (size, rgba) = renderer.display_rgba8()?;
+            save_png(path, size, &rgba, &about)?;
+        }
+        Format::Exr => {
+            save_exr(path, &renderer.linear()?, &about, args.exr_options())?;
+        }
+    }
+    Ok(())
+}
+
+fn progress(count: usize) -> ProgressBar {
+    let is_shown = count > 1 && std::io::stderr().is_terminal();
+    let target = if is_shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(count as u64), target);
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg} {eta}");
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
+
+fn report(args: &RenderArgs, path: &Path, time_secs: f64, seconds: f64) -> Result<()> {
+    let [width, height] = args.size;
+    if args.json {
+        let line = Json::object([
+            ("path", Json::text(path.display().to_string())),
+            ("width", Json::Number(f64::from(width))),
+            ("height", Json::Number(f64::from(height))),
+            ("time_secs", Json::Number(time_secs)),
+            ("seconds", Json::Number(seconds)),
+        ]);
+        return print(&format!("{line}\n"));
+    }
+    print(&format!("{} {width}x{height}, {seconds:.1} s\n", path.display()))
+}

@@ -1,0 +1,172 @@
+//! Writes a rendered frame with everything needed to make it again.
+
+use std::path::Path;
+
+use glam::{Mat4, Vec3, Vec4};
+
+use super::FileError;
+use crate::export::exr::{EmbeddedFile, ExrDepth, ExrMetadata, ExrOptions, FloatImage, PRESET, QUALITY, write_exr};
+use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME};
+use crate::export::png::{PngPixels, write_png};
+use crate::render::LinearImage;
+use crate::scene::edit::map_files;
+use crate::scene::{Camera, PRESET_VERSION, Preset, Projection, Quality, direction, quality_to_ron};
+
+/// What a picture shows and how it was computed.
+#[derive(Clone, Copy, Debug)]
+pub struct About<'a> {
+    /// The sky.
+    pub preset: &'a Preset,
+    /// How it was computed.
+    pub quality: &'a Quality,
+    /// Seconds since the scene began.
+    pub time_secs: f64,
+}
+
+/// Writes a display-encoded picture as PNG. The preset goes in as text; map images are only named.
+///
+/// # Errors
+/// If the bytes do not fit the size, or the file cannot be written.
+pub fn save_png(path: &Path, size: [u32; 2], rgba: &[u8], about: &About<'_>) -> Result<(), FileError> {
+    let (preset, _) = portable(about.preset);
+    let text = [
+        ("Software".to_owned(), ExrMetadata::default().software),
+        ("Title".to_owned(), preset.name.clone()),
+        (PRESET.to_owned(), preset.to_ron()),
+        (VERSION_NAME.to_owned(), PRESET_VERSION.to_string()),
+        (QUALITY.to_owned(), quality_to_ron(about.quality)),
+        (format!("{PREFIX}timeSecs"), about.time_secs.to_string()),
+    ];
+    if rgba.iter().skip(3).step_by(4).all(|alpha| *alpha == u8::MAX) {
+        let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        return Ok(write_png(path, size, PngPixels::Rgb8(&rgb), &text)?);
+    }
+    Ok(write_png(path, size, PngPixels::Rgba8(rgba), &text)?)
+}
+
+/// Writes linear light as EXR with preset, quality, map images and camera; returns the depth that was used.
+///
+/// # Errors
+/// If a value is NaN or infinite, if half was demanded and a value exceeds it, or if the file cannot be written.
+pub fn save_exr(
+    path: &Path,
+    image: &LinearImage,
+    about: &About<'_>,
+    options: ExrOptions,
+) -> Result<ExrDepth, FileError> {
+    let (preset, files) = portable(about.preset);
+    let camera = matrices(&about.preset.scene.camera, image.size);
+    let metadata = ExrMetadata {
+        comments: preset.name.clone(),
+        preset_ron: preset.to_ron(),
+        preset_version: PRESET_VERSION,
+        quality_ron: quality_to_ron(about.quality),
+        candela_per_unit: image.candela_per_unit,
+        world_to_camera: camera.map(|camera| camera[0].to_cols_array_2d()),
+        world_to_ndc: camera.map(|camera| camera[1].to_cols_array_2d()),
+        extra: vec![("timeSecs".to_owned(), about.time_secs.to_string())],
+        files,
+        ..ExrMetadata::default()
+    };
+    let [width, height] = image.size;
+    let image = FloatImage { width, height, rgba: image.rgba.clone(), depth: None, crop: None };
+    Ok(write_exr(path, &image, &metadata, options)?)
+}
+
+/// The preset with map images named without their folders, and the images themselves.
+fn portable(preset: &Preset) -> (Preset, Vec<EmbeddedFile>) {
+    let mut preset = preset.clone();
+    let mut files: Vec<EmbeddedFile> = Vec::new();
+    for name in map_files(&mut preset.scene.weather.layers) {
+        let stem = Path::new(&*name).file_name().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        let bytes = std::fs::read(&*name).ok();
+        *name = stem;
+        let Some(bytes) = bytes else { continue };
+        let mut file = EmbeddedFile::new(name.clone(), bytes);
+        if files.contains(&file) {
+            continue;
+        }
+        if files.iter().any(|other| other.name == *name) {
+            *name = format!("{}-{name}", files.len());
+            file.name.clone_from(name);
+        }
+        files.push(file);
+    }
+    (preset, files)
+}
+
+/// World to camera and world to normalised device coordinates, in OpenEXR's convention of row vectors: the rows of its
+/// matrices are the columns here. Only a lens has them.
+fn matrices(camera: &Camera, size: [u32; 2]) -> Option<[Mat4; 2]> {
+    if camera.projection != Projection::Perspective {
+        return None;
+    }
+    let forward = direction(camera.pitch_deg, camera.heading_deg);
+    let right = direction(0.0, camera.heading_deg + 90.0);
+    let up = right.cross(forward);
+    let eye = Vec3::new(camera.east_m, camera.height_m, camera.south_m);
+    let row = |axis: Vec3| axis.extend(-axis.dot(eye));
+    let to_camera = Mat4::from_cols(row(right), row(up), row(forward), Vec4::W).transpose();
+    let tangent = (camera.field_of_view_deg.to_radians() * 0.5).tan();
+    let aspect = size[0] as f32 / size[1] as f32;
+    // x / z and −y / z fall on 0 ..= 1 from the top left; the third coordinate is 1 − 1 m / z.
+    let to_ndc = Mat4::from_cols(
+        Vec4::new(0.5 / (tangent * aspect), 0.0, 0.0, 0.0),
+        Vec4::new(0.0, -0.5 / tangent, 0.0, 0.0),
+        Vec4::new(0.5, 0.5, 1.0, 1.0),
+        Vec4::new(0.0, 0.0, -1.0, 0.0),
+    );
+    Some([to_camera, to_ndc * to_camera])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Origin, open};
+    use super::*;
+    use crate::scene::{MapSource, Scene};
+
+    #[test]
+    fn a_known_point_falls_on_its_pixel() {
+        let camera = Camera { heading_deg: 90.0, pitch_deg: 0.0, field_of_view_deg: 90.0, ..Camera::default() };
+        let [to_camera, to_ndc] = matrices(&camera, [200, 100]).expect("a lens");
+        let eye = Vec3::new(camera.east_m, camera.height_m, camera.south_m);
+        let ahead = to_camera.transform_point3(eye + Vec3::new(100.0, 10.0, 0.0));
+        assert!(ahead.abs_diff_eq(Vec3::new(0.0, 10.0, 100.0), 1e-3), "{ahead}");
+        // 50 m south of a line of sight to the east is to the right by half of 2 × 100 m.
+        let shown = to_ndc.project_point3(eye + Vec3::new(100.0, 100.0, 50.0));
+        assert!((shown.x - 0.625).abs() < 1e-5 && shown.y.abs() < 1e-5, "right of the middle, at the top: {shown}");
+    }
+
+    #[test]
+    fn a_picture_gives_its_sky_back_with_its_map() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let map = folder.path().join("here/map.png");
+        std::fs::create_dir(folder.path().join("here")).expect("made");
+        write_png(&map, [1, 1], PngPixels::Rgb8(&[1, 2, 3]), &[]).expect("written");
+        let mut preset = Preset::new("Mapped", Scene::default());
+        preset.scene.weather.layers[0].source = MapSource::Image;
+        preset.scene.weather.layers[0].image.0 = map.display().to_string();
+        let quality = Quality { light_steps: 7, ..Quality::default() };
+        let about = About { preset: &preset, quality: &quality, time_secs: 2.5 };
+        let image = LinearImage {
+            size: [1, 1],
+            rgba: vec![[1.0, 2.0, 1e6, 1.0]],
+            distance_m: vec![0.0],
+            candela_per_unit: 1.0,
+        };
+        let exr = folder.path().join("sky.exr");
+        assert_eq!(save_exr(&exr, &image, &about, ExrOptions::default()).expect("written"), ExrDepth::Float);
+        let mut sky = open(&exr).expect("opened");
+        assert_eq!((sky.quality, sky.origin), (Some(quality.clone()), Origin::Picture(exr)));
+        let unpacked = std::mem::take(&mut sky.preset.scene.weather.layers[0].image.0);
+        assert_eq!(std::fs::read(&unpacked).expect("unpacked"), std::fs::read(&map).expect("there"));
+        assert!(!sky.preset.to_ron().contains("here"), "no folder of this machine is told");
+
+        let png = folder.path().join("sky.png");
+        save_png(&png, [1, 1], &[1, 2, 3, 255], &about).expect("written");
+        let missing = open(&png).expect_err("a PNG carries no map").to_string();
+        assert!(missing.contains("map.png") && missing.contains("same folder"), "{missing}");
+        std::fs::copy(&map, folder.path().join("map.png")).expect("copied");
+        assert_eq!(open(&png).expect("found beside it").preset.name, "Mapped");
+    }
+}

@@ -1,0 +1,121 @@
+//! A scripted flight with time playing: frames per second as the editor would reach them, and the budget per pass.
+
+use std::time::Instant;
+
+use super::bench::{Case, PassSamples, Stats, add_passes};
+use super::table::{Cell, Table};
+use crate::gpu::TimingSource;
+use crate::render::{RenderError, Renderer};
+use crate::scene::{Camera, Frame, Output};
+
+/// Scene time from one frame to the next, in seconds: the rate that the flight should at least reach.
+const FRAME_SECS: f64 = 1.0 / 8.0;
+/// Speed of the camera, in metres per second.
+const SPEED_MPS: f64 = 30.0;
+/// How far the camera turns to either side, in degrees, and in which period, in seconds.
+const TURN_DEG: f64 = 12.0;
+const TURN_SECS: f64 = 20.0;
+/// Frames at the beginning that do not count.
+const WARM_UP: u32 = 4;
+
+/// What a flight measured.
+#[derive(Clone, Debug)]
+pub struct Flight {
+    /// Frames that counted.
+    pub frames: u32,
+    /// Frames per second over all of them, by the clock on the wall.
+    pub frames_per_sec: f64,
+    /// Milliseconds of each frame, by the clock on the wall.
+    pub frame_ms: Vec<f64>,
+    /// Samples of each pass.
+    pub passes: Vec<PassSamples>,
+}
+
+/// The camera of a frame of the flight: forwards, swaying from side to side, climbing a little.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
+pub fn camera_at(start: &Camera, time_secs: f64) -> Camera {
+    let phase = time_secs / TURN_SECS * std::f64::consts::TAU;
+    let heading = f64::from(start.heading_deg).to_radians();
+    let way = SPEED_MPS * time_secs;
+    Camera {
+        east_m: (f64::from(start.east_m) + way * heading.sin()) as f32,
+        south_m: (f64::from(start.south_m) - way * heading.cos()) as f32,
+        height_m: (f64::from(start.height_m) + 2.0 * time_secs) as f32,
+        heading_deg: (f64::from(start.heading_deg) + TURN_DEG * phase.sin()).rem_euclid(360.0) as f32,
+        ..start.clone()
+    }
+}
+
+/// Flies through the sky of `case` for that many frames.
+///
+/// # Errors
+/// If a frame cannot be rendered.
+pub fn fly(renderer: &mut Renderer, case: &Case, frames: u32) -> Result<Flight, RenderError> {
+    let mut scene = case.scene.clone();
+    let mut flight = Flight { frames, frames_per_sec: 0.0, frame_ms: Vec::new(), passes: Vec::new() };
+    for index in 0..WARM_UP + frames {
+        let time_secs = f64::from(index) * FRAME_SECS;
+        scene.camera = camera_at(&case.scene.camera, time_secs);
+        let frame =
+            Frame { scene: &scene, quality: &case.quality, size: case.size, time_secs, output: Output::Display };
+        let begun = Instant::now();
+        let report = renderer.render(&frame)?;
+        if index >= WARM_UP {
+            flight.frame_ms.push(begun.elapsed().as_secs_f64() * 1e3);
+            add_passes(&mut flight.passes, &report);
+        }
+    }
+    let seconds = flight.frame_ms.iter().sum::<f64>() * 1e-3;
+    flight.frames_per_sec = f64::from(frames) / seconds.max(1e-9);
+    Ok(flight)
+}
+
+/// The budget: what each pass takes of a frame on average, the rest of the program's own time last.
+pub fn table(case: &Case, flight: &Flight, source: TimingSource) -> Table {
+    let title = format!(
+        "Flight through {} at {}: {:.1} frames per second over {} frames ({}, frames by wall clock)",
+        case.name,
+        case.size_text(),
+        flight.frames_per_sec,
+        flight.frames,
+        source.label()
+    );
+    let mut table = Table::new(title, &["pass", "runs", "median", "p5", "p95", "mean per frame", "share %"]);
+    let count = f64::from(flight.frames.max(1));
+    let whole = flight.frame_ms.iter().sum::<f64>() / count;
+    let mut named = 0.0;
+    let mut push = |pass: &str, samples: &[f64], mean: f64| {
+        let stats = Stats::of(samples);
+        table.rows.push(vec![
+            Cell::text(pass),
+            Cell::Number(Some(samples.len() as f64), 0),
+            Cell::millis(stats.map(|stats| stats.median)),
+            Cell::millis(stats.map(|stats| stats.p5)),
+            Cell::millis(stats.map(|stats| stats.p95)),
+            Cell::millis(Some(mean)),
+            Cell::Number((whole > 0.0).then(|| mean / whole * 100.0), 1),
+        ]);
+    };
+    for samples in &flight.passes {
+        let mean = samples.millis.iter().sum::<f64>() / count;
+        named += mean;
+        push(samples.pass, &samples.millis, mean);
+    }
+    push("(between passes)", &[], (whole - named).max(0.0));
+    push("frame", &flight.frame_ms, whole);
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_flight_starts_at_the_camera_and_moves_on() {
+        let start = Camera { heading_deg: 90.0, ..Camera::default() };
+        assert_eq!(camera_at(&start, 0.0), start);
+        let later = camera_at(&start, 10.0);
+        assert!((later.east_m - start.east_m - 300.0).abs() < 1e-3, "east by 300 m: {}", later.east_m);
+        assert!((camera_at(&start, 5.0).heading_deg - 102.0).abs() < 1e-3, "a quarter period turns by 12°");
+    }
+}

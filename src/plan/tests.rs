@@ -1,0 +1,115 @@
+//! Each rule of the plan as a row of a table.
+
+use super::*;
+use crate::scene::{DensityModel, Quality};
+
+fn plan_of(change: impl FnOnce(&mut Scene, &mut Quality)) -> FramePlan {
+    plan_for(Output::Display, change)
+}
+
+fn plan_for(output: Output, change: impl FnOnce(&mut Scene, &mut Quality)) -> FramePlan {
+    let (mut scene, mut quality) = (Scene::default(), Quality::default());
+    change(&mut scene, &mut quality);
+    FramePlan::new(&Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output })
+}
+
+fn because(plan: &FramePlan, effect: &str) -> String {
+    plan.reasons.iter().find(|reason| reason.effect == effect).map_or(String::new(), |reason| reason.because.clone())
+}
+
+#[test]
+fn the_default_sky_calls_for_clouds_ground_shadows_and_history() {
+    let plan = plan_of(|_, _| {});
+    let march = plan.march.expect("clouds");
+    assert!(march.profile && march.detail && march.curl && march.air && march.ground, "{march:?}");
+    assert!(!march.thesis && !march.uniform && !march.front && !march.float, "{march:?}");
+    assert!(plan.ground.is_some_and(|ground| ground.terrain && ground.shadow_px.is_some()), "{:?}", plan.ground);
+    assert_eq!(plan.temporal.map(UpdatePattern::phases), Some(16));
+    assert_eq!((plan.sunshafts, plan.stars, plan.key), (None, false, KeyLight::Sun));
+}
+
+#[test]
+fn strength_zero_leaves_no_trace() {
+    let march = |change: fn(&mut Scene)| plan_of(|scene, _| change(scene)).march.expect("clouds");
+    assert!(!march(|scene| scene.layers[0].detail_strength = 0.0).flags().any(|flag| flag == "DETAIL" || flag == "CURL"));
+    assert!(!march(|scene| scene.layers[0].curl_m = 0.0).curl);
+    assert!(!march(|scene| scene.air.aerial_perspective = false).air);
+    assert!(march(|scene| scene.weather.coverage_changes = true).front);
+    let ground = |change: fn(&mut Scene)| plan_of(|scene, _| change(scene)).ground;
+    assert!(ground(|scene| scene.ground.cloud_shadows = 0.0).is_some_and(|ground| ground.shadow_px.is_none()));
+    assert!(ground(|scene| scene.ground.hills_m = 0.0).is_some_and(|ground| !ground.terrain));
+    assert_eq!(ground(|scene| scene.ground.visible = false), None);
+}
+
+#[test]
+fn no_cloud_no_march_no_history_no_shadow() {
+    for (change, word) in [
+        ((|scene: &mut Scene| scene.weather.coverage = 0.0) as fn(&mut Scene), "coverage"),
+        (|scene| scene.layers[0].enabled = false, "switched off"),
+        (|scene| scene.layers[0].density = 0.0, "density"),
+        (|scene| scene.layers[0].top_m = scene.layers[0].base_m, "thickness"),
+    ] {
+        let plan = plan_of(|scene, _| change(scene));
+        assert_eq!((plan.march, plan.temporal), (None, None));
+        assert!(plan.ground.is_some_and(|ground| ground.shadow_px.is_none()), "no shadow without cloud");
+        assert!(because(&plan, "clouds").contains(word), "{}", because(&plan, "clouds"));
+    }
+}
+
+#[test]
+fn the_models_in_use_decide_which_noise_is_bound() {
+    let plan = plan_of(|scene, _| {
+        scene.layers[0].model = DensityModel::Thesis;
+        scene.layers.push(scene.layers[0].clone());
+        scene.layers[1].model = DensityModel::Uniform;
+    });
+    let march = plan.march.expect("clouds");
+    assert_eq!((march.layers, march.profile, march.thesis, march.uniform), (2, false, true, true));
+}
+
+#[test]
+fn looking_up_leaves_the_ground_out() {
+    let plan = plan_of(|scene, _| scene.camera.pitch_deg = 89.0);
+    assert_eq!(plan.ground, None, "{}", because(&plan, "ground"));
+    assert!(plan_of(|scene, _| scene.camera.projection = Projection::Equirect).ground.is_some());
+}
+
+#[test]
+fn sunshafts_need_a_light_near_the_view() {
+    let shafts = |elevation, azimuth| {
+        plan_of(|scene, _| {
+            scene.sunshafts.strength = 1.0;
+            scene.sun.elevation_deg = elevation;
+            scene.sun.azimuth_deg = azimuth;
+        })
+        .sunshafts
+    };
+    assert!(shafts(10.0, 0.0).is_some());
+    assert_eq!(shafts(10.0, 180.0), None, "behind the camera");
+    assert!(plan_of(|scene, _| scene.sun.azimuth_deg = 0.0).sunshafts.is_none(), "strength 0");
+}
+
+#[test]
+fn night_has_stars_and_a_moon() {
+    let plan = plan_of(|scene, _| scene.sun.elevation_deg = -20.0);
+    assert_eq!((plan.stars, plan.key), (true, KeyLight::Moon));
+}
+
+#[test]
+fn files_are_marched_whole_in_float() {
+    let plan = plan_for(Output::Linear, |_, _| {});
+    assert_eq!((plan.float, plan.temporal), (true, None));
+    let plan = plan_for(Output::CloudsAlone, |_, _| {});
+    assert!(plan.alone && plan.march.is_some_and(|march| !march.air && march.float), "clouds alone have no air");
+}
+
+#[test]
+fn every_entry_has_its_reason_once() {
+    let plan = plan_of(|_, _| {});
+    let mut effects: Vec<_> = plan.reasons.iter().map(|reason| reason.effect).collect();
+    effects.sort_unstable();
+    let count = effects.len();
+    effects.dedup();
+    assert_eq!(effects.len(), count);
+    assert!(plan.reasons.iter().all(|reason| reason.because.len() > 6), "{:?}", plan.reasons);
+}

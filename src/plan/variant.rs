@@ -1,0 +1,110 @@
+//! The compiled form of the march.
+
+use super::reasons::Reasons;
+use super::{KeyLight, Lighting};
+use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, Output, Scene};
+
+/// The compiled form of the march: the key of its pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MarchVariant {
+    /// How many layers there are.
+    pub layers: u32,
+    /// Octaves of multiple scattering on top of the first.
+    pub octaves: u32,
+    /// Shape of the space.
+    pub domain: DomainKind,
+    /// Some layer has the profile model, which reads the large noise.
+    pub profile: bool,
+    /// Some layer has the thesis's model, which reads the Worley noise.
+    pub thesis: bool,
+    /// Some layer is uniform.
+    pub uniform: bool,
+    /// Some layer reads the small noise.
+    pub detail: bool,
+    /// Some layer reads the curl noise.
+    pub curl: bool,
+    /// Coverage differs on the two sides of a front.
+    pub front: bool,
+    /// The air in front of clouds is drawn.
+    pub air: bool,
+    /// The ground may end a ray.
+    pub ground: bool,
+    /// Targets are float.
+    pub float: bool,
+}
+
+impl MarchVariant {
+    /// Every flag the cloud shaders know.
+    pub const FLAGS: [&'static str; 9] =
+        ["PROFILE", "THESIS", "UNIFORM", "DETAIL", "CURL", "FRONT", "AIR", "GROUND", "FLOAT"];
+
+    /// The variant a frame needs, or `None` when no cloud can be in it.
+    pub(super) fn new(frame: &Frame<'_>, ground: bool, lighting: &Lighting, why: &mut Reasons) -> Option<Self> {
+        let scene = frame.scene;
+        let layers: Vec<&CloudLayer> = scene.visible_layers().collect();
+        if layers.is_empty() {
+            why.no("clouds", no_cloud(scene));
+            return None;
+        }
+        why.yes("clouds", format!("{} layer(s) can hold cloud", layers.len()));
+        let any = |test: fn(&CloudLayer) -> bool| layers.iter().any(|layer| test(layer));
+        let detail = any(CloudLayer::has_detail);
+        why.either(detail, "detail noise", "some layer is eroded", "erosion is 0 in every layer");
+        let curl = detail && any(CloudLayer::has_curl);
+        why.either(curl, "curl noise", "it drags the detail", "it drags nothing");
+        let front = scene.weather.coverage_changes && scene.weather.coverage != scene.weather.coverage_change_to;
+        why.either(front, "coverage front", "another coverage arrives", "coverage is the same everywhere");
+        let lit = lighting.key != KeyLight::None;
+        let octaves = if lit { frame.quality.octaves } else { 0 };
+        why.either(octaves > 0, "scattering octaves", format!("{octaves} on top of the first"), "only the first order");
+        let air = scene.air.aerial_perspective && frame.output != Output::CloudsAlone;
+        why.either(air, "aerial perspective", "air lies before the clouds", "it is switched off, or clouds stand alone");
+        Some(Self {
+            layers: u32::try_from(layers.len()).unwrap_or(1),
+            octaves,
+            domain: scene.domain.kind,
+            profile: any(|layer| layer.model == DensityModel::Profile),
+            thesis: any(|layer| layer.model == DensityModel::Thesis),
+            uniform: any(|layer| layer.model == DensityModel::Uniform),
+            detail: detail && any(|layer| layer.model != DensityModel::Uniform),
+            curl: curl && any(|layer| layer.model != DensityModel::Uniform),
+            front,
+            air,
+            ground,
+            float: frame.output != Output::Display,
+        })
+    }
+
+    /// Parts of the shader that add a binding are switched by text, or the layout would still need them.
+    pub fn flags(self) -> impl Iterator<Item = &'static str> {
+        let on = [
+            self.profile, self.thesis, self.uniform, self.detail, self.curl, self.front, self.air, self.ground,
+            self.float,
+        ];
+        Self::FLAGS.into_iter().zip(on).filter_map(|(flag, on)| on.then_some(flag))
+    }
+
+    /// The flags that decide how the density field is read, for other passes that read it.
+    pub fn field_flags(self) -> impl Iterator<Item = &'static str> {
+        self.flags().filter(|flag| !matches!(*flag, "AIR" | "GROUND" | "FLOAT"))
+    }
+
+    /// Numbers the compiler should know.
+    pub fn domain_index(self) -> u32 {
+        match self.domain {
+            DomainKind::Shell => 0,
+            DomainKind::Flat => 1,
+            DomainKind::Box => 2,
+        }
+    }
+}
+
+fn no_cloud(scene: &Scene) -> &'static str {
+    if scene.layers.iter().all(|layer| !layer.enabled) {
+        "every layer is switched off"
+    } else if scene.layers.iter().all(|layer| !layer.is_visible()) {
+        "no layer has thickness, density and extinction"
+    } else {
+        "coverage is 0"
+    }
+}

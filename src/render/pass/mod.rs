@@ -1,0 +1,3 @@
+//! Passes that own their textures.
+
+pub mod sky;

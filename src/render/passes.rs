@@ -1,0 +1,258 @@
+//! The passes of one frame, each from what the plan says to jobs. Their order is in [`super::Renderer`].
+
+use super::context::{Bound, Context, Extent};
+use super::targets::{CloudTarget, Targets};
+use super::uniforms::other::GroundUniforms;
+use super::uniforms::scene::{SceneUniforms, ViewUniforms};
+use crate::gpu::{GpuError, Job, ProgramKey};
+use crate::plan::{FramePlan, MarchVariant};
+use crate::scene::ToneMap;
+
+/// The buffers that several passes read.
+#[derive(Debug)]
+pub(super) struct FrameBuffers {
+    pub(super) view: wgpu::Buffer,
+    pub(super) scene: wgpu::Buffer,
+    pub(super) ground: wgpu::Buffer,
+    pub(super) display: wgpu::Buffer,
+    pub(super) shafts: Option<wgpu::Buffer>,
+}
+
+impl FrameBuffers {
+    fn resources(&self) -> Bound<'_> {
+        let mut bound: Bound<'_> = vec![
+            ("view", self.view.as_entire_binding()),
+            ("scene", self.scene.as_entire_binding()),
+            ("ground", self.ground.as_entire_binding()),
+            ("display", self.display.as_entire_binding()),
+        ];
+        if let Some(shafts) = &self.shafts {
+            bound.push(("shafts", shafts.as_entire_binding()));
+        }
+        bound
+    }
+
+    pub(super) fn new(context: &Context<'_>, view: &ViewUniforms, scene: &SceneUniforms, ground: &GroundUniforms) -> Self {
+        let uniform = |label, bytes| context.gpu.uniform(label, bytes);
+        Self {
+            view: uniform("view", bytemuck::bytes_of(view)),
+            scene: uniform("scene", bytemuck::bytes_of(scene)),
+            ground: uniform("ground", bytemuck::bytes_of(ground)),
+            display: uniform("display", &[0; 16]),
+            shafts: None,
+        }
+    }
+}
+
+/// What one frame's passes read and write.
+pub(super) struct Passes<'a> {
+    pub(super) context: &'a Context<'a>,
+    pub(super) plan: &'a FramePlan,
+    pub(super) targets: &'a Targets,
+    /// Bakes, sky tables and weather map, by name.
+    pub(super) shared: Bound<'a>,
+    pub(super) buffers: &'a FrameBuffers,
+    pub(super) jobs: Vec<Job>,
+}
+
+fn view_of(texture: &crate::gpu::Texture) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::TextureView(&texture.view)
+}
+
+fn field_key(file: &'static str, march: MarchVariant) -> ProgramKey {
+    ProgramKey::plain(file)
+        .with_flags(march.field_flags())
+        .with_constant("DOMAIN", march.domain_index())
+        .with_constant("LAYERS", march.layers)
+}
+
+/// The march of a variant.
+pub(super) fn march_key(march: MarchVariant) -> ProgramKey {
+    field_key("pass/march.wgsl", march).with_flags(march.flags()).with_constant("OCTAVES", march.octaves)
+}
+
+/// The programs a plan needs for every frame, bakes left out.
+pub(super) fn programs(plan: &FramePlan, with_history: bool) -> Vec<ProgramKey> {
+    let mut keys = vec![background_key(plan), tonemap_key(plan)];
+    if let Some(march) = plan.march {
+        keys.push(march_key(march));
+        if plan.ground.is_some_and(|ground| ground.shadow_px.is_some()) {
+            keys.push(field_key("pass/cloud_shadow.wgsl", march));
+        }
+    }
+    if plan.temporal.is_some() {
+        keys.push(temporal_key(false));
+        if with_history {
+            keys.push(temporal_key(true));
+        }
+    }
+    if plan.sunshafts.is_some() {
+        keys.push(ProgramKey::plain("pass/shafts_blur.wgsl"));
+        keys.push(shafts_mask_key(plan));
+    }
+    if plan.float {
+        keys.push(composite_key(plan));
+    }
+    keys
+}
+
+fn background_key(plan: &FramePlan) -> ProgramKey {
+    let ground = plan.ground;
+    let on = [
+        ("GROUND", ground.is_some()),
+        ("TERRAIN", ground.is_some_and(|ground| ground.terrain)),
+        ("SHADOW", ground.is_some_and(|ground| ground.shadow_px.is_some())),
+        ("STARS", plan.stars),
+        ("FLOAT", plan.float),
+    ];
+    ProgramKey::plain("pass/background.wgsl").with_flags(on.into_iter().filter_map(|(flag, on)| on.then_some(flag)))
+}
+
+fn composed_flags(plan: &FramePlan) -> impl Iterator<Item = &'static str> {
+    [("CLOUDS", plan.march.is_some()), ("SHAFTS", plan.sunshafts.is_some())]
+        .into_iter()
+        .filter_map(|(flag, on)| on.then_some(flag))
+}
+
+fn composite_key(plan: &FramePlan) -> ProgramKey {
+    let alone = plan.alone && plan.march.is_some();
+    ProgramKey::plain("pass/composite.wgsl").with_flags(composed_flags(plan)).with_flags(alone.then_some("ALONE"))
+}
+
+fn tonemap_key(plan: &FramePlan) -> ProgramKey {
+    let curve = match plan.tone_map {
+        ToneMap::Agx => 0,
+        ToneMap::Neutral => 1,
+        ToneMap::Linear => 2,
+    };
+    ProgramKey::plain("pass/tonemap.wgsl").with_flags(composed_flags(plan)).with_constant("TONE_MAP", curve)
+}
+
+fn temporal_key(with_history: bool) -> ProgramKey {
+    ProgramKey::plain("pass/temporal.wgsl").with_flags(with_history.then_some("HISTORY"))
+}
+
+fn shafts_mask_key(plan: &FramePlan) -> ProgramKey {
+    ProgramKey::plain("pass/shafts_mask.wgsl").with_flags(plan.ground.is_some().then_some("GROUND"))
+}
+
+impl<'a> Passes<'a> {
+    fn bound(&self, own: &[(&'static str, wgpu::BindingResource<'a>)]) -> Bound<'a> {
+        let mut bound = self.shared.clone();
+        bound.extend(self.buffers.resources());
+        bound.extend_from_slice(own);
+        bound
+    }
+
+    /// Sunlight through the clouds on a map of the ground.
+    pub(super) fn cloud_shadow(&mut self) -> Result<(), GpuError> {
+        let (Some(target), Some(march)) = (&self.targets.cloud_shadow, self.plan.march) else {
+            return Ok(());
+        };
+        let bound = self.bound(&[("shadow_out", view_of(target))]);
+        let key = field_key("pass/cloud_shadow.wgsl", march);
+        self.jobs.extend(self.context.banded("cloud_shadow", &key, &bound, Extent::image(target.size()))?);
+        Ok(())
+    }
+
+    /// Sky and ground behind the clouds.
+    pub(super) fn background(&mut self) -> Result<(), GpuError> {
+        let targets = self.targets;
+        let mut own = vec![("background_out", view_of(&targets.background))];
+        if let Some(distance) = &targets.ground_distance {
+            own.push(("ground_distance_out", view_of(distance)));
+        }
+        if let Some(shadow) = &targets.cloud_shadow {
+            own.push(("cloud_shadow", view_of(shadow)));
+        }
+        let bound = self.bound(&own);
+        let key = background_key(self.plan);
+        self.jobs.extend(self.context.banded("background", &key, &bound, Extent::image(targets.size()))?);
+        Ok(())
+    }
+
+    /// The clouds along this frame's rays; `counters` makes it count its work.
+    pub(super) fn march(&mut self, counters: Option<&'a wgpu::Buffer>) -> Result<Option<&'a CloudTarget>, GpuError> {
+        let targets = self.targets;
+        let (Some(marched), Some(march)) = (&targets.marched, self.plan.march) else {
+            return Ok(None);
+        };
+        let mut own =
+            vec![("cloud_out", view_of(&marched.light)), ("distance_out", view_of(&marched.distance))];
+        if let Some(distance) = &targets.ground_distance {
+            own.push(("ground_distance", view_of(distance)));
+        }
+        let mut key = march_key(march);
+        if let Some(counters) = counters {
+            key = key.with_flags(["COUNT"]);
+            own.push(("counters", counters.as_entire_binding()));
+        }
+        let bound = self.bound(&own);
+        let rays = marched.light.size();
+        self.jobs.extend(self.context.banded("march", &key, &bound, Extent::image(rays))?);
+        Ok(Some(marched))
+    }
+
+    /// The full picture from fresh rays and the picture before, `history` if it is of any use.
+    pub(super) fn temporal(
+        &mut self,
+        fresh: &'a CloudTarget,
+        history: Option<&'a CloudTarget>,
+        result: &'a CloudTarget,
+    ) -> Result<(), GpuError> {
+        let mut own = vec![
+            ("fresh_cloud", view_of(&fresh.light)),
+            ("fresh_distance", view_of(&fresh.distance)),
+            ("cloud_out", view_of(&result.light)),
+            ("distance_out", view_of(&result.distance)),
+        ];
+        if let Some(history) = history {
+            own.push(("history_cloud", view_of(&history.light)));
+            own.push(("history_distance", view_of(&history.distance)));
+        }
+        let bound = self.bound(&own);
+        let key = temporal_key(history.is_some());
+        self.jobs.extend(self.context.banded("temporal", &key, &bound, Extent::image(self.targets.size()))?);
+        Ok(())
+    }
+
+    /// Streaks of light: mask, then blur; they are added where the picture is composed.
+    pub(super) fn sunshafts(&mut self, cloud: Option<&'a CloudTarget>) -> Result<(), GpuError> {
+        let (Some([mask, shafts]), Some(cloud)) = (&self.targets.shafts, cloud) else {
+            return Ok(());
+        };
+        let mut own = vec![("cloud", view_of(&cloud.light)), ("mask_out", view_of(mask))];
+        if let Some(distance) = &self.targets.ground_distance {
+            own.push(("ground_distance", view_of(distance)));
+        }
+        let extent = Extent::image(mask.size());
+        let key = shafts_mask_key(self.plan);
+        self.jobs.push(self.context.whole("sunshafts", &key, &self.bound(&own), extent)?);
+        let own = [("shafts_mask", view_of(mask)), ("shafts_out", view_of(shafts))];
+        let key = ProgramKey::plain("pass/shafts_blur.wgsl");
+        self.jobs.push(self.context.whole("sunshafts", &key, &self.bound(&own), extent)?);
+        Ok(())
+    }
+
+    /// Linear light for a file, and the picture for the screen.
+    pub(super) fn finish(&mut self, cloud: Option<&'a CloudTarget>, display: &'a crate::gpu::Texture) -> Result<(), GpuError> {
+        let targets = self.targets;
+        let mut own = vec![("background", view_of(&targets.background)), ("display_out", view_of(display))];
+        if let Some(cloud) = cloud {
+            own.push(("cloud", view_of(&cloud.light)));
+        }
+        if let Some([_, shafts]) = &targets.shafts {
+            own.push(("shafts_light", view_of(shafts)));
+        }
+        if let Some(linear) = &targets.linear {
+            own.push(("linear_out", view_of(linear)));
+        }
+        let bound = self.bound(&own);
+        let extent = Extent::image(targets.size());
+        if self.plan.float {
+            self.jobs.push(self.context.whole("composite", &composite_key(self.plan), &bound, extent)?);
+        }
+        self.jobs.extend(self.context.banded("tonemap", &tonemap_key(self.plan), &bound, extent)?);
+        Ok(())
+    }
+}

@@ -1,0 +1,150 @@
+//! One frame from top to bottom.
+
+use std::time::Instant;
+
+use glam::{UVec2, Vec2, Vec3};
+
+use super::context::Context;
+use super::passes::{FrameBuffers, Passes};
+use super::targets::{Targets, ray_count};
+use super::uniforms::scene::ViewUniforms;
+use super::uniforms::{self, Eye};
+use super::{History, Pending, RenderError, Renderer};
+use crate::gpu::Job;
+use crate::plan::{FramePlan, HistoryKey, Lighting};
+use crate::scene::{Frame, Projection, direction};
+
+/// Beyond this the picture before shows nothing of this one.
+const CUT_DISTANCE_M: f64 = 1500.0;
+/// The same as an angle, by its cosine.
+const CUT_COSINE: f32 = 0.7;
+/// The same for clouds that the wind has carried away.
+const CUT_WIND_M: f64 = 400.0;
+
+impl Renderer {
+    /// The frame, top to bottom: bakes, cloud shadows, background, march, temporal, sunshafts, tonemap. Returns its jobs
+    /// and how many of them make bakes, and leaves it pending.
+    pub(super) fn schedule(
+        &mut self,
+        frame: &Frame<'_>,
+        plan: FramePlan,
+        slice_ms: Option<f64>,
+        counters: Option<&wgpu::Buffer>,
+    ) -> Result<(Vec<Job>, usize), RenderError> {
+        let scene = frame.scene;
+        let lighting = Lighting::new(scene);
+        let eye = Eye::new(&scene.camera);
+        let size = frame.render_size();
+        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms };
+
+        let mut jobs = Vec::new();
+        self.sky.update(&self.gpu, &self.programs, &uniforms::sky_inputs(scene, &lighting), &mut jobs)?;
+        self.bakes.update(&context, &plan, scene.ground.seed, &mut jobs)?;
+        if plan.march.is_some() {
+            self.weather.update(&context, &scene.weather, frame.time_secs, &mut jobs)?;
+        } else {
+            self.weather.clear();
+        }
+        let bake_jobs = jobs.len();
+
+        let (targets, is_new) = Targets::fitting(self.targets.take(), &self.gpu, &plan, size)?;
+        let targets = &*self.targets.insert(targets);
+        let key = HistoryKey::new(frame);
+        let usable = self.history.take().filter(|history| !is_new && is_continued(history, &key, frame, &eye));
+        let phase = usable.as_ref().map_or(0, |history| history.phase + 1);
+        let view = view_uniforms(frame, &plan, &eye, usable.as_ref(), phase, &lighting);
+        let shadow_px = plan.ground.and_then(|ground| ground.shadow_px).unwrap_or(1);
+        let mut buffers = FrameBuffers::new(
+            &context,
+            &view,
+            &uniforms::scene_uniforms(frame, &lighting, &eye),
+            &uniforms::ground_uniforms(scene, &lighting, &eye, shadow_px),
+        );
+        buffers.display =
+            self.gpu.uniform("display", bytemuck::bytes_of(&uniforms::display_uniforms(scene, &lighting)));
+        buffers.shafts = plan.sunshafts.map(|samples| {
+            self.gpu.uniform("shafts", bytemuck::bytes_of(&uniforms::shaft_uniforms(scene, &lighting, samples)))
+        });
+
+        let mut shared = self.bakes.resources();
+        shared.extend(self.sky.resources());
+        if let Some(map) = self.weather.texture() {
+            shared.push(("weather_map", wgpu::BindingResource::TextureView(&map.view)));
+        }
+        let display = &targets.display[self.display_side];
+        let mut passes = Passes { context: &context, plan: &plan, targets, shared, buffers: &buffers, jobs };
+        passes.cloud_shadow()?;
+        passes.background()?;
+        let mut cloud = passes.march(counters)?;
+        let mut side = 0;
+        if let (Some(fresh), Some(history)) = (cloud, &targets.history) {
+            side = usable.as_ref().map_or(0, |usable| 1 - usable.side);
+            passes.temporal(fresh, usable.as_ref().map(|usable| &history[usable.side]), &history[side])?;
+            cloud = Some(&history[side]);
+        }
+        passes.sunshafts(cloud)?;
+        passes.finish(cloud, display)?;
+
+        let jobs = passes.jobs;
+        let history = plan.temporal.map(|_| History { key, eye, time_secs: frame.time_secs, phase, side });
+        let display = display.clone();
+        self.pending = Some(Pending { plan, history, display, started: Instant::now(), times: Vec::new() });
+        self.candela_per_unit = lighting.candela_per_unit;
+        Ok((jobs, bake_jobs))
+    }
+}
+
+/// Whether a picture still says anything about the next one.
+fn is_continued(history: &History, key: &HistoryKey, frame: &Frame<'_>, eye: &Eye) -> bool {
+    let looked = |eye: &Eye| direction(eye.heading_pitch_deg[1], eye.heading_pitch_deg[0]);
+    let turned_too_far = looked(&history.eye).dot(looked(eye)) < CUT_COSINE
+        && frame.scene.camera.projection == Projection::Perspective;
+    let carried = uniforms::wind_mps(&frame.scene.wind).length() * (frame.time_secs - history.time_secs).abs();
+    history.key == *key
+        && history.eye.position.distance(eye.position) < CUT_DISTANCE_M
+        && !turned_too_far
+        && carried < CUT_WIND_M
+        && frame.time_secs.is_finite()
+}
+
+fn view_uniforms(
+    frame: &Frame<'_>,
+    plan: &FramePlan,
+    eye: &Eye,
+    history: Option<&History>,
+    phase: u32,
+    lighting: &Lighting,
+) -> ViewUniforms {
+    let scene = frame.scene;
+    let size = frame.render_size();
+    let before = history.map_or(*eye, |history| history.eye);
+    let elapsed = history.map_or(0.0, |history| frame.time_secs - history.time_secs);
+    let wind_scale = scene.visible_layers().next().map_or(1.0, |layer| f64::from(layer.wind_scale));
+    let motion = uniforms::wind_mps(&scene.wind) * wind_scale * elapsed;
+    let (block, offset, is_checkerboard) = plan.temporal.map_or(([1, 1], [0, 0], false), |pattern| {
+        (pattern.block(), pattern.offset(phase), pattern.is_checkerboard())
+    });
+    let height = size[1] as f32;
+    let pixel_angle = match scene.camera.projection {
+        Projection::Perspective => 2.0 * (scene.camera.field_of_view_deg * 0.5).to_radians().tan() / height,
+        Projection::Equirect => std::f32::consts::PI / height,
+        Projection::Dome => std::f32::consts::FRAC_PI_2 / height,
+    };
+    ViewUniforms {
+        camera: uniforms::camera_uniforms(&scene.camera, size, eye, eye),
+        previous: uniforms::camera_uniforms(&scene.camera, size, &before, eye),
+        cloud_motion_m: Vec3::new(motion.x as f32, 0.0, motion.y as f32),
+        is_still: u32::from(history.is_some() && before == *eye && elapsed == 0.0),
+        size: UVec2::from_array(size),
+        ray_count: UVec2::from_array(ray_count(plan, size)),
+        update_block: UVec2::from_array(block),
+        update_offset: UVec2::from_array(offset),
+        jitter: Vec2::new(1.0, 0.0),
+        update_checkerboard: u32::from(is_checkerboard),
+        pixel_angle,
+        star_radiance: 0.03 / lighting.candela_per_unit,
+        pad0: 0.0,
+        pad1: 0.0,
+        pad2: 0.0,
+    }
+}

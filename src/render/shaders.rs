@@ -1,0 +1,30 @@
+//! The closed lists behind every shader: flags, and structs shared with Rust.
+
+use super::uniforms::air::AirUniforms;
+use super::uniforms::other::{
+    BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, ReliefUniforms, ShaftUniforms,
+};
+use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
+use crate::gpu::ShaderTable;
+
+/// All flags and structs.
+pub const TABLE: ShaderTable = ShaderTable {
+    flags: &[
+        "AIR", "ALONE", "BELOW", "CLOUDS", "COUNT", "CURL", "DETAIL", "FLOAT", "FRONT", "GROUND", "HISTORY", "PROFILE",
+        "SHADOW", "SHAFTS", "STARS", "TERRAIN", "THESIS", "UNIFORM",
+    ],
+    structs: &[
+        AirUniforms::GENERATED,
+        BandUniforms::GENERATED,
+        BlendUniforms::GENERATED,
+        CameraUniforms::GENERATED,
+        DisplayUniforms::GENERATED,
+        GroundUniforms::GENERATED,
+        LayerUniforms::GENERATED,
+        MapUniforms::GENERATED,
+        ReliefUniforms::GENERATED,
+        SceneUniforms::GENERATED,
+        ShaftUniforms::GENERATED,
+        ViewUniforms::GENERATED,
+    ],
+};

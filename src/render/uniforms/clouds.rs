@@ -1,0 +1,218 @@
+//! Cloud layers, wind and weather as shaders take them.
+
+use glam::{DVec2, DVec3, Vec3, Vec4};
+
+use super::camera::Eye;
+use super::scene::{LayerUniforms, SceneUniforms};
+use crate::plan::Lighting;
+use crate::scene::{CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, MapSource, PhaseKind, Scene, Wind};
+
+/// Velocity of the wind: east in x, south in y.
+pub(crate) fn wind_mps(wind: &Wind) -> DVec2 {
+    let from = f64::from(wind.from_deg).to_radians();
+    DVec2::new(-from.sin(), from.cos()) * f64::from(wind.speed_mps)
+}
+
+/// Offsets in tiles, wrapped in f64 so that days of wind cost no precision.
+fn wrapped(tiles: f64) -> f32 {
+    (tiles - tiles.floor()) as f32
+}
+
+fn map_from_world(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) -> Vec4 {
+    let weather = &scene.weather;
+    let size_m = f64::from(weather.size_m) * f64::from(layer.map_scale);
+    let is_generated = weather.layers.iter().all(|map| map.source == MapSource::Generated);
+    let drift = if weather.moves && is_generated {
+        wind_mps(&scene.wind) * time_secs * f64::from(layer.wind_scale)
+    } else {
+        DVec2::ZERO
+    };
+    let shift = DVec2::new(layer.map_east_m.into(), layer.map_south_m.into());
+    let tiles = (DVec2::new(eye.position.x, eye.position.z) - drift - shift) / size_m;
+    let per_metre = (1.0 / size_m) as f32;
+    match weather.edge {
+        MapEdge::Repeat => Vec4::new(wrapped(tiles.x), wrapped(tiles.y), per_metre, 0.0),
+        // A map that ends lies with its middle on the world's origin.
+        MapEdge::Clamp | MapEdge::Clear => {
+            Vec4::new((tiles.x + 0.5) as f32, (tiles.y + 0.5) as f32, per_metre, 0.0)
+        }
+    }
+}
+
+fn noise_from_world(size_m: f32, eye: &Eye, drift_m: DVec3) -> Vec4 {
+    let size_m = f64::from(size_m);
+    let tiles = (DVec3::new(eye.position.x, 0.0, eye.position.z) - drift_m) / size_m;
+    Vec4::new(wrapped(tiles.x), wrapped(tiles.y), wrapped(tiles.z), (1.0 / size_m) as f32)
+}
+
+/// Scale and offset that make a body of the map's field, for a share of the sky.
+fn body(coverage: f32, softness: f32) -> (f32, f32) {
+    let coverage = coverage.clamp(0.0, 1.0);
+    (1.0 / softness, -(1.0 - coverage * (1.0 + softness)) / softness)
+}
+
+fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) -> LayerUniforms {
+    let wind = wind_mps(&scene.wind) * f64::from(layer.wind_scale);
+    let drift = |speed: f32, rise: f32| {
+        let moved = wind * f64::from(speed) * time_secs;
+        DVec3::new(moved.x, f64::from(rise) * time_secs, moved.y)
+    };
+    let thickness_m = (layer.top_m - layer.base_m).max(1.0);
+    let downwind = wind_mps(&scene.wind).normalize_or_zero() * f64::from(layer.lean_m);
+    let coverage = |value: f32| body(value + layer.coverage_offset, layer.edge_softness);
+    let (body_scale, body_bias) = coverage(scene.weather.coverage);
+    let curl = noise_from_world(layer.curl_size_m, eye, drift(scene.wind.detail_speed, 0.0));
+    LayerUniforms {
+        map_from_world: map_from_world(scene, layer, eye, time_secs),
+        shape_from_world: noise_from_world(layer.shape_size_m, eye, drift(scene.wind.shape_speed, scene.wind.rise_mps)),
+        detail_from_world: noise_from_world(
+            layer.detail_size_m,
+            eye,
+            drift(scene.wind.detail_speed, scene.wind.rise_mps),
+        ),
+        curl_from_world: Vec4::new(curl.x, curl.z, curl.w, layer.curl_m / layer.detail_size_m),
+        lean: Vec4::new(downwind.x as f32, downwind.y as f32, 0.0, 0.0),
+        base_m: layer.base_m,
+        per_thickness: 1.0 / thickness_m,
+        base_ramp: (90.0 / thickness_m).clamp(0.02, 0.25),
+        top_variation: layer.top_variation,
+        body_scale,
+        body_bias,
+        body_bias_beyond: coverage(scene.weather.coverage_change_to).1,
+        anvil: layer.anvil,
+        shape_strength: layer.shape_strength,
+        detail_strength: layer.detail_strength,
+        wispiness: layer.wispiness,
+        sharpness: layer.sharpness,
+        density_scale: layer.density,
+        extinction_per_m: layer.extinction_per_m(),
+        albedo: layer.scattering_per_m / layer.extinction_per_m(),
+        shadow_extinction_scale: layer.shadow_extinction_scale,
+        sun_gain: layer.phase_gain * layer.brightness,
+        ambient_gain: layer.brightness,
+        model: match layer.model {
+            DensityModel::Profile => 0,
+            DensityModel::Thesis => 1,
+            DensityModel::Uniform => 2,
+        },
+        phase_kind: match layer.phase.kind {
+            PhaseKind::Isotropic => 0,
+            PhaseKind::HenyeyGreenstein => 1,
+            PhaseKind::TwoLobe => 2,
+            PhaseKind::CornetteShanks => 3,
+            PhaseKind::Schlick => 4,
+            PhaseKind::Rayleigh => 5,
+        },
+        g: layer.phase.g,
+        back_g: layer.phase.back_g,
+        back_mix: layer.phase.back_mix,
+        pad0: 0.0,
+    }
+}
+
+/// Where the front of another coverage lies: see [`SceneUniforms::front`].
+fn front(scene: &Scene, eye: &Eye, time_secs: f64) -> Vec4 {
+    let velocity = wind_mps(&scene.wind);
+    let upwind = if velocity == DVec2::ZERO { DVec2::X } else { -velocity.normalize() };
+    let travelled = velocity.length() * time_secs;
+    let here = DVec2::new(eye.position.x, eye.position.z).dot(upwind);
+    let distance = f64::from(scene.weather.front_distance_m) - travelled - here;
+    Vec4::new(upwind.x as f32, upwind.y as f32, 1.0 / scene.weather.front_width_m, distance as f32)
+}
+
+/// Everything the cloud shaders are told.
+pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) -> SceneUniforms {
+    let (scene, quality) = (frame.scene, frame.quality);
+    let visible: Vec<&CloudLayer> = scene.visible_layers().collect();
+    let lowest_m = visible.iter().map(|layer| layer.base_m).fold(f32::INFINITY, f32::min);
+    let highest_m = visible.iter().map(|layer| layer.top_m).fold(0.0, f32::max);
+    let lowest_m = if lowest_m.is_finite() { lowest_m } else { 0.0 };
+    let mut layers = [LayerUniforms::default_empty(); MAX_LAYERS];
+    for (slot, layer) in layers.iter_mut().zip(&visible) {
+        *slot = layer_uniforms(scene, layer, eye, frame.time_secs);
+    }
+    let domain = &scene.domain;
+    let centre = [f64::from(domain.box_east_m) - eye.position.x, f64::from(domain.box_south_m) - eye.position.z];
+    let corner = |sign: f64, height: f32| {
+        let x = centre[0] + sign * 0.5 * f64::from(domain.box_width_m);
+        let z = centre[1] + sign * 0.5 * f64::from(domain.box_length_m);
+        Vec3::new(x as f32, height, z as f32)
+    };
+    let light = &scene.scattering;
+    SceneUniforms {
+        towards_light: lighting.towards_key,
+        planet_radius_m: domain.planet_radius_m,
+        light_illuminance: lighting.key_lux / lighting.candela_per_unit,
+        lowest_m,
+        ambient_top: light.ambient_top.vec() * light.ambient,
+        highest_m,
+        ambient_bottom: light.ambient_bottom.vec() * light.ambient,
+        ambient_base_share: light.ambient_base_share,
+        box_min: corner(-1.0, lowest_m),
+        ambient_occlusion: light.ambient_occlusion,
+        box_max: corner(1.0, highest_m),
+        map_edge: match scene.weather.edge {
+            MapEdge::Repeat => 0,
+            MapEdge::Clamp => 1,
+            MapEdge::Clear => 2,
+        },
+        front: front(scene, eye, frame.time_secs),
+        octave_extinction: light.octave_extinction,
+        octave_energy: light.octave_energy,
+        octave_anisotropy: light.octave_anisotropy,
+        early_exit: quality.early_exit,
+        view_steps: quality.view_steps,
+        step_m: quality.step_m,
+        step_growth: quality.step_growth,
+        empty_stride: quality.empty_stride,
+        light_steps: quality.light_steps,
+        first_light_step_m: quality.first_light_step_m(),
+        light_growth: quality.light_growth,
+        light_reach_m: quality.light_reach_m,
+        light_detail_steps: quality.light_detail_steps,
+        detail_distance_m: quality.detail_distance_m,
+        noise_level_bias: quality.noise_level_bias,
+        max_distance_m: quality.max_distance_m,
+        layers,
+    }
+}
+
+impl LayerUniforms {
+    /// A layer that holds nothing.
+    fn default_empty() -> Self {
+        bytemuck::Zeroable::zeroed()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_west_wind_blows_to_the_east() {
+        let velocity = wind_mps(&Wind { from_deg: 270.0, speed_mps: 10.0, ..Wind::default() });
+        assert!((velocity - DVec2::new(10.0, 0.0)).length() < 1e-9, "{velocity}");
+    }
+
+    #[test]
+    fn coverage_is_a_threshold() {
+        let at = |coverage: f32, field: f32| {
+            let (scale, bias) = body(coverage, 0.25);
+            (field * scale + bias).clamp(0.0, 1.0)
+        };
+        assert_eq!(at(0.0, 1.0), 0.0, "coverage 0 is empty");
+        assert_eq!(at(1.0, 0.0), 1.0, "coverage 1 is full");
+        assert!(at(0.5, 0.6) > at(0.4, 0.6), "more coverage, more body");
+    }
+
+    #[test]
+    fn a_month_of_wind_keeps_its_precision() {
+        let scene = Scene::default();
+        let eye = Eye::new(&scene.camera);
+        let tile = |time: f64| map_from_world(&scene, &scene.layers[0], &eye, time).x;
+        let month = 30.0 * 86_400.0;
+        let period = f64::from(scene.weather.size_m) / f64::from(scene.wind.speed_mps);
+        let whole = (month / period).round() * period;
+        assert!((tile(whole) - tile(0.0)).abs() < 1e-5, "{} {}", tile(whole), tile(0.0));
+    }
+}

@@ -1,0 +1,121 @@
+//! The structs of the smaller passes.
+
+use glam::{Vec2, Vec3, Vec4};
+
+use crate::gpu_struct;
+
+gpu_struct! {
+    /// The ground and the shadows on it.
+    pub struct GroundUniforms {
+        /// Colour of the plains.
+        pub albedo: Vec3,
+        /// Radius of the planet.
+        pub planet_radius_m: f32,
+        /// Colour of heights.
+        pub rock: Vec3,
+        /// Height of the mountains.
+        pub mountains_m: f32,
+        /// Unit vector towards the key light.
+        pub towards_light: Vec3,
+        /// Height of the hills.
+        pub hills_m: f32,
+        /// Irradiance of the key light above the air, in working units.
+        pub light_illuminance: Vec3,
+        /// No ground is higher than this.
+        pub highest_m: f32,
+        /// Tile coordinates of the relief: offset in xy, tiles per metre in z.
+        pub tile_from_world: Vec4,
+        /// Coordinates on the shadow map: offset in xy, maps per metre in z.
+        pub shadow_from_world: Vec4,
+        /// Where the plain at the world's origin lies.
+        pub plain_at: Vec2,
+        /// Light that passes the clouds on average, beyond the map.
+        pub mean_shadow: f32,
+        /// The artist's strength of cloud shadows.
+        pub shadow_strength: f32,
+        /// Distance beyond which the ground is smooth.
+        pub reach_m: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: f32,
+    }
+
+    /// What a generated weather map is made of.
+    pub struct MapUniforms {
+        /// Seed.
+        pub seed: u32,
+        /// Large cells across the map.
+        pub large_cells: u32,
+        /// Share of small puffs.
+        pub small_share: f32,
+        /// Strength of the fraying.
+        pub fray: f32,
+        /// Difference of regions.
+        pub contrast: f32,
+        /// Weight of cumulus.
+        pub cumulus: f32,
+        /// Weight of stratus.
+        pub stratus: f32,
+        /// Weight of stratocumulus.
+        pub stratocumulus: f32,
+        /// Place on the noises' third axis, in tiles.
+        pub phase: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: f32,
+    }
+
+    /// How two states of a map join.
+    pub struct BlendUniforms {
+        /// Share of the later one.
+        pub share: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: f32,
+    }
+
+    /// What the relief is made of.
+    pub struct ReliefUniforms {
+        /// Seed.
+        pub seed: u32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: u32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: u32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: u32,
+    }
+
+    /// Streaks of light.
+    pub struct ShaftUniforms {
+        /// Unit vector towards the light.
+        pub towards_light: Vec3,
+        /// Length of the streaks.
+        pub length_rad: f32,
+        /// Radiance of a full streak, in working units.
+        pub light: Vec3,
+        /// Samples along a streak.
+        pub samples: u32,
+    }
+
+    /// From light to display.
+    pub struct DisplayUniforms {
+        /// Factor from working units to the curve's input.
+        pub exposure: f32,
+        /// Contrast.
+        pub contrast: f32,
+        /// Saturation.
+        pub saturation: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+    }
+}

@@ -1,0 +1,247 @@
+//! The weather map of the moment, from its layers: generated states that evolve, images, and image sequences.
+
+use std::path::{Path, PathBuf};
+
+use super::RenderError;
+use super::context::{Bound, Context, Extent};
+use super::uniforms::other::{BlendUniforms, MapUniforms};
+use crate::export::map::read_map_image;
+use crate::export::pattern::FramePattern;
+use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
+use crate::scene::{MapLayer, MapSource, Weather};
+
+/// Edge length of the map.
+const SIDE: u32 = 512;
+/// Largest user image.
+const LARGEST_IMAGE: u32 = 4096;
+/// States of a generated map in the time in which it becomes another; between two of them it is blended.
+const STATES: f64 = 16.0;
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// What one layer looks like at a state of its evolution.
+#[derive(Clone, Debug, PartialEq)]
+enum StateKey {
+    Generated { layer: MapLayer, state: i64 },
+    Image(PathBuf),
+}
+
+#[derive(Debug)]
+struct State {
+    key: StateKey,
+    texture: Texture,
+}
+
+/// The map and what it was made from.
+#[derive(Debug)]
+pub(super) struct WeatherMap {
+    states: Vec<State>,
+    /// The joined map of each layer over those below it; the last is the map.
+    joined: Vec<Texture>,
+    /// States and share that each joined map was made from.
+    made_from: Vec<(StateKey, StateKey, f32)>,
+}
+
+impl WeatherMap {
+    pub(super) fn new() -> Self {
+        Self { states: Vec::new(), joined: Vec::new(), made_from: Vec::new() }
+    }
+
+    /// Appends the jobs that bring the map to a time.
+    pub(super) fn update(
+        &mut self,
+        context: &Context<'_>,
+        weather: &Weather,
+        time_secs: f64,
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), RenderError> {
+        let mut wanted = Vec::new();
+        for (index, layer) in weather.layers.iter().enumerate() {
+            let states = states_at(layer, weather, time_secs)
+                .map_err(|message| RenderError::Map { layer: index, message })?;
+            for key in [&states.0, &states.1] {
+                if !self.states.iter().any(|state| state.key == *key) {
+                    let texture = make_state(context, key, jobs).map_err(|error| error.in_layer(index))?;
+                    self.states.push(State { key: key.clone(), texture });
+                }
+            }
+            wanted.push(states);
+        }
+        let is_same = wanted == self.made_from;
+        self.states.retain(|state| wanted.iter().any(|(before, after, _)| state.key == *before || state.key == *after));
+        if is_same {
+            return Ok(());
+        }
+        self.join(context, &wanted, jobs)?;
+        self.made_from = wanted;
+        Ok(())
+    }
+
+    fn join(
+        &mut self,
+        context: &Context<'_>,
+        wanted: &[(StateKey, StateKey, f32)],
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), GpuError> {
+        self.joined.truncate(wanted.len());
+        while self.joined.len() < wanted.len() {
+            self.joined.push(Texture::new_2d(context.gpu, "weather_map", [SIDE; 2], FORMAT)?);
+        }
+        let linear_repeat = repeat_sampler(context.gpu);
+        for (index, (before, after, share)) in wanted.iter().enumerate() {
+            let find = |key: &StateKey| self.states.iter().find(|state| state.key == *key).map(|state| &state.texture);
+            let (Some(before), Some(after)) = (find(before), find(after)) else {
+                continue;
+            };
+            let blend = BlendUniforms { share: *share, pad0: 0.0, pad1: 0.0, pad2: 0.0 };
+            let buffer = context.gpu.uniform("blend", bytemuck::bytes_of(&blend));
+            let mut bound: Bound<'_> = vec![
+                ("blend", buffer.as_entire_binding()),
+                ("linear_repeat", wgpu::BindingResource::Sampler(&linear_repeat)),
+                ("map_before", wgpu::BindingResource::TextureView(&before.view)),
+                ("map_after", wgpu::BindingResource::TextureView(&after.view)),
+                ("map_out", wgpu::BindingResource::TextureView(&self.joined[index].view)),
+            ];
+            let mut key = ProgramKey::plain("pass/weather_blend.wgsl");
+            if index > 0 {
+                key = key.with_flags(["BELOW"]);
+                bound.push(("map_below", wgpu::BindingResource::TextureView(&self.joined[index - 1].view)));
+            }
+            jobs.push(context.whole("weather_map", &key, &bound, Extent::image([SIDE; 2]))?);
+        }
+        Ok(())
+    }
+
+    /// The map, once there is one.
+    pub(super) fn texture(&self) -> Option<&Texture> {
+        self.joined.last()
+    }
+
+    /// Forgets everything, as when no cloud is drawn.
+    pub(super) fn clear(&mut self) {
+        *self = Self::new();
+    }
+
+    /// Device memory in bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.states.iter().map(|state| state.texture.bytes()).chain(self.joined.iter().map(Texture::bytes)).sum()
+    }
+}
+
+/// The two states a layer is between at a time, and the share of the later one.
+fn states_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<(StateKey, StateKey, f32), String> {
+    match layer.source {
+        MapSource::Generated => {
+            let period = f64::from(weather.evolution_secs);
+            let position = if period > 0.0 { time_secs / period * STATES } else { 0.0 };
+            let state = position.floor();
+            let key = |state: f64| StateKey::Generated { layer: layer.clone(), state: state as i64 };
+            // The blend moves in steps of 1/64, below what can be seen, so that it need not run in every frame.
+            let share = ((position - state) * 64.0).floor() / 64.0;
+            let after = if share > 0.0 { key(state + 1.0) } else { key(state) };
+            Ok((key(state), after, share as f32))
+        }
+        MapSource::Image => {
+            let name = named(layer)?;
+            Ok((StateKey::Image(name.into()), StateKey::Image(name.into()), 0.0))
+        }
+        MapSource::Sequence => {
+            let pattern = FramePattern::parse(Path::new(named(layer)?)).map_err(|error| error.to_string())?;
+            let frames = pattern.existing_frames().map_err(|error| error.to_string())?;
+            if frames.is_empty() {
+                return Err(format!("no image fits the pattern {}; write # for each digit", layer.image.0));
+            }
+            let position = (time_secs * f64::from(layer.images_per_sec)).max(0.0);
+            let at = |offset: usize| {
+                let index = (position.floor() as usize + offset) % frames.len();
+                StateKey::Image(frames[index].1.clone())
+            };
+            let share = ((position - position.floor()) * 16.0).floor() / 16.0;
+            Ok((at(0), at(usize::from(share > 0.0)), share as f32))
+        }
+    }
+}
+
+fn named(layer: &MapLayer) -> Result<&str, String> {
+    if layer.image.0.is_empty() {
+        return Err("no image is named; give the path of a square PNG or EXR".to_owned());
+    }
+    Ok(&layer.image.0)
+}
+
+/// What making a state can fail with, before it is known for which layer.
+enum StateError {
+    Gpu(GpuError),
+    Image(String),
+}
+
+impl StateError {
+    fn in_layer(self, layer: usize) -> RenderError {
+        match self {
+            Self::Gpu(error) => error.into(),
+            Self::Image(message) => RenderError::Map { layer, message },
+        }
+    }
+}
+
+impl From<GpuError> for StateError {
+    fn from(error: GpuError) -> Self {
+        Self::Gpu(error)
+    }
+}
+
+fn make_state(context: &Context<'_>, key: &StateKey, jobs: &mut Vec<Job>) -> Result<Texture, StateError> {
+    match key {
+        StateKey::Generated { layer, state } => {
+            let texture = Texture::new_2d(context.gpu, "weather_state", [SIDE; 2], FORMAT)?;
+            let cells = f64::from(layer.large_cells.max(1));
+            // One large cell on the third axis in the time in which the map becomes another; whole tiles repeat.
+            let phase = (*state as f64 / STATES / cells).rem_euclid(1.0);
+            let map = MapUniforms {
+                seed: layer.seed,
+                large_cells: layer.large_cells,
+                small_share: layer.small_share,
+                fray: layer.fray,
+                contrast: layer.contrast,
+                cumulus: layer.cumulus,
+                stratus: layer.stratus,
+                stratocumulus: layer.stratocumulus,
+                phase: phase as f32,
+                pad0: 0.0,
+                pad1: 0.0,
+                pad2: 0.0,
+            };
+            let buffer = context.gpu.uniform("map", bytemuck::bytes_of(&map));
+            let bound = vec![
+                ("map", buffer.as_entire_binding()),
+                ("map_out", wgpu::BindingResource::TextureView(&texture.view)),
+            ];
+            let key = ProgramKey::plain("pass/weather_map.wgsl");
+            jobs.extend(context.banded("weather_map", &key, &bound, Extent::image([SIDE; 2]))?);
+            Ok(texture)
+        }
+        StateKey::Image(path) => {
+            let image = read_map_image(path, LARGEST_IMAGE).map_err(|error| StateError::Image(error.to_string()))?;
+            let texture = Texture::new_2d(context.gpu, "weather_image", [image.width, image.height], FORMAT)?;
+            let halfs: Vec<[half::f16; 4]> =
+                image.rgba.iter().map(|texel| texel.map(|value| half::f16::from_f32(value.clamp(0.0, 1.0)))).collect();
+            context.gpu.queue.write_texture(
+                texture.texture.as_image_copy(),
+                bytemuck::cast_slice(&halfs),
+                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(image.width * 8), rows_per_image: None },
+                texture.texture.size(),
+            );
+            Ok(texture)
+        }
+    }
+}
+
+fn repeat_sampler(gpu: &Gpu) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("weather_map"),
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..Default::default()
+    })
+}

@@ -1,0 +1,271 @@
+//! The program as a user meets it: exit codes, streams and messages.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+/// Runs the program in a folder of its own, on the software driver and without a display.
+fn nephoscope(folder: &TempDir, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_nephoscope"))
+        .args(args)
+        .current_dir(folder.path())
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env("NEPHOSCOPE_ADAPTER", "llvmpipe")
+        .env("NO_COLOR", "1")
+        .output()
+        .expect("the program starts")
+}
+
+fn folder() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Runs, and expects this exit code, all these words on stderr, nothing on stdout and no panic.
+#[track_caller]
+fn refuses(folder: &TempDir, args: &[&str], code: i32, words: &[&str]) {
+    let output = nephoscope(folder, args);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(code), "{args:?}: {message}");
+    assert!(!message.contains("panicked"), "{args:?}: {message}");
+    for word in words {
+        // clap wraps lines to the terminal's width.
+        let joined = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(joined.contains(word), "{args:?} should say {word:?}: {message}");
+    }
+    assert_eq!(stdout(&output), "", "{args:?}: errors do not belong on stdout");
+}
+
+fn write(folder: &TempDir, name: &str, text: &str) {
+    std::fs::write(folder.path().join(name), text).expect("a file in a temporary folder");
+}
+
+const TINY: [&str; 4] = ["--size", "64x36", "--quality", "draft"];
+
+fn render<'a>(scene: &'a str, output: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [&["render", scene, "-o", output][..], &TINY, more].concat()
+}
+
+#[test]
+fn bad_presets_are_refused_with_place_parameter_and_range() {
+    let folder = folder();
+    for (name, text, words) in [
+        ("broken.ron", "(version: 2,\n scene: (sun: (disc: true)", &["broken.ron:2:27:", "end of the file"][..]),
+        ("type.ron", "(version: 2, scene: (sun: (disc: 5)))", &["type.ron:1:34:", "sun.disc", "true or false"]),
+        (
+            "nan.ron",
+            "(version: 2, scene: (layers: [(base_m: NaN)]))",
+            &["nan.ron:1:40:", "layers.0.base_m = NaN", "15000 m"],
+        ),
+        (
+            "range.ron",
+            "(version: 2, scene: (layers: [(base_m: -5)]))",
+            &["layers.0.base_m = -5 m is outside 0 m ..= 15000 m"],
+        ),
+        (
+            "field.ron",
+            "(version: 2, scene: (sun: (elevaton_deg: 5)))",
+            &["1:28:", "sun.elevaton_deg", "did you mean elevation_deg?"],
+        ),
+        ("newer.ron", "(version: 99)", &["version 99 is newer than this program"]),
+        (
+            "rule.ron",
+            "(version: 2, scene: (layers: [(top_m: 20)]))",
+            &["rule.ron:1:39:", "layers.0.top_m = 20 m lies below"],
+        ),
+    ] {
+        write(&folder, name, text);
+        refuses(&folder, &render(name, "a.png", &[]), 4, words);
+        refuses(&folder, &["presets", "validate", name], 4, words);
+    }
+    assert!(!folder.path().join("a.png").exists(), "nothing was written");
+}
+
+#[test]
+fn missing_and_foreign_files_are_refused() {
+    let folder = folder();
+    refuses(&folder, &render("nowhere.ron", "a.png", &[]), 4, &["nowhere.ron", "no such file"]);
+    refuses(&folder, &render("fair_wether", "a.png", &[]), 4, &["did you mean fair_weather?", "presets list"]);
+    std::fs::write(folder.path().join("bytes.ron"), [0_u8, 255, 254]).expect("written");
+    refuses(&folder, &render("bytes.ron", "a.png", &[]), 4, &["bytes.ron", "not a text file"]);
+    write(&folder, "text.exr", "this is no picture");
+    refuses(&folder, &render("text.exr", "a.png", &[]), 4, &["text.exr", "neither an OpenEXR nor a PNG"]);
+    let bare = folder.path().join("bare.exr");
+    let image =
+        nephoscope::export::exr::FloatImage { width: 2, height: 2, rgba: vec![[0.5; 4]; 4], ..Default::default() };
+    let (metadata, options) = (nephoscope::export::exr::ExrMetadata::default(), Default::default());
+    nephoscope::export::exr::write_exr(&bare, &image, &metadata, options).expect("written");
+    refuses(&folder, &render("bare.exr", "a.png", &[]), 4, &["bare.exr", "holds no sky"]);
+}
+
+#[test]
+fn a_missing_map_is_named() {
+    let folder = folder();
+    let text = "(version: 2, scene: (weather: (layers: [(source: Image, image: \"gone.png\")])))";
+    write(&folder, "map.ron", text);
+    refuses(&folder, &render("map.ron", "a.png", &[]), 4, &["weather.layers.0.image", "gone.png"]);
+    assert!(!folder.path().join("a.png").exists(), "nothing was written");
+}
+
+#[test]
+fn unwritable_outputs_are_refused_at_once() {
+    let folder = folder();
+    refuses(&folder, &render("thesis", "none/a.png", &[]), 4, &["none/a.png", "no folder none"]);
+    std::fs::create_dir(folder.path().join("a.png")).expect("made");
+    refuses(&folder, &render("thesis", "a.png", &[]), 4, &["a.png", "a folder or a device"]);
+    #[cfg(target_os = "linux")]
+    refuses(&folder, &render("thesis", "/dev/full", &[]), 4, &["/dev/full", "a folder or a device"]);
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_standard_output_is_an_error() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
+    let output = Command::new(env!("CARGO_BIN_EXE_nephoscope"))
+        .args(["presets", "list"])
+        .stdout(full)
+        .output()
+        .expect("the program starts");
+    assert_eq!(output.status.code(), Some(4));
+    assert!(stderr(&output).contains("standard output"), "{}", stderr(&output));
+}
+
+#[test]
+fn wrong_usage_ends_with_2() {
+    let folder = folder();
+    for (args, words) in [
+        (&["render"][..], &["Usage"][..]),
+        (&["render", "thesis", "-o", "a.png", "--size", "64"], &["WIDTHxHEIGHT"]),
+        (&["render", "thesis", "-o", "a.png", "--size", "0x9"], &["WIDTHxHEIGHT"]),
+        (&["render", "thesis", "-o", "a.jpg"], &["a.jpg", ".png", ".exr"]),
+        (&["render", "thesis", "-o", "a.png", "--time", "NaN"], &["finite"]),
+        (&["render", "thesis", "-o", "a.png", "--set", "nothing"], &["key=value"]),
+        (
+            &["render", "thesis", "-o", "a.png", "--set", "wether.coverage=1"],
+            &["wether.coverage", "did you mean weather.coverage"],
+        ),
+        (
+            &["render", "thesis", "-o", "a.png", "--set", "weather.coverage=2"],
+            &["weather.coverage = 2 is outside 0 ..= 1"],
+        ),
+        (&["render", "thesis", "-o", "a.png", "--set", "quality.view_steps=x"], &["whole number"]),
+        (&["render", "thesis", "-o", "a.png", "--camera", "1,2"], &["east,height,south"]),
+        (&["render", "thesis", "-o", "a.png", "--camera", "0,-9,0,0,0"], &["camera.height_m = -9 m is outside"]),
+        (&["render", "thesis", "-o", "a.png", "--quality", "best"], &["draft, preview, high or final"]),
+        (&["render", "thesis", "-o", "a.png", "--frames", "1-3"], &["####"]),
+        (&["render", "thesis", "-o", "a.####.png"], &["--frames"]),
+        (&["render", "thesis", "-o", "a.####.png", "--frames", "3-1"], &["3-1"]),
+        (&["render", "thesis", "-o", "a.png", "--clouds-only"], &[".exr"]),
+        (&["render", "thesis", "-o", "a.png", "--depth", "half"], &[".exr"]),
+        (&["bench", "--flight", "--suite", "thesis"], &["cannot be used with"]),
+        (&["frobnicate", "x", "y"], &[]),
+    ] {
+        refuses(&folder, args, 2, words);
+    }
+    assert!(std::fs::read_dir(folder.path()).expect("listed").next().is_none(), "nothing was written");
+}
+
+#[test]
+fn an_unknown_adapter_ends_with_3() {
+    let folder = folder();
+    refuses(&folder, &render("thesis", "a.png", &["--adapter", "No Such Card"]), 3, &["No Such Card", "llvmpipe"]);
+    refuses(&folder, &["info", "--adapter", "No Such Card"], 3, &["no usable graphics adapter"]);
+}
+
+#[test]
+fn presets_are_listed_shown_and_validated() {
+    let folder = folder();
+    let list = nephoscope(&folder, &["presets", "list"]);
+    assert!(list.status.success(), "{}", stderr(&list));
+    assert!(stdout(&list).lines().count() >= 10 && stdout(&list).starts_with("fair_weather"), "{}", stdout(&list));
+    let shown = nephoscope(&folder, &["presets", "show", "moonlit"]);
+    write(&folder, "copy.ron", &stdout(&shown));
+    let valid = nephoscope(&folder, &["presets", "validate", "copy.ron"]);
+    assert_eq!((valid.status.code(), stdout(&valid).as_str()), (Some(0), "copy.ron: Moonlit night is sound\n"));
+}
+
+#[test]
+fn info_describes_the_machine() {
+    let folder = folder();
+    let text = nephoscope(&folder, &["info"]);
+    assert!(stdout(&text).contains("serialised host time") && stdout(&text).contains("llvmpipe"), "{}", stdout(&text));
+    let json = nephoscope(&folder, &["info", "--json"]);
+    assert!(stdout(&json).starts_with("{\"version\":"), "{}", stdout(&json));
+    let parameters = nephoscope(&folder, &["info", "--parameters"]);
+    assert!(stdout(&parameters).contains("`layers.0.base_m`"), "the reference is printed");
+}
+
+/// Width and height of a PNG.
+fn png_size(path: &Path) -> [u32; 2] {
+    let image = image::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    [image.width(), image.height()]
+}
+
+fn renders(folder: &TempDir, args: &[&str]) -> Output {
+    let output = nephoscope(folder, args);
+    assert!(output.status.success(), "{args:?}: {}", stderr(&output));
+    output
+}
+
+#[test]
+fn a_picture_is_written_and_its_sky_comes_back() {
+    let folder = folder();
+    let output = renders(&folder, &render("stratus", "a.exr", &["--set", "weather.coverage=0.625", "--json"]));
+    assert!(stdout(&output).starts_with("{\"path\":\"a.exr\",\"width\":64,\"height\":36,"), "{}", stdout(&output));
+    let again = renders(&folder, &["presets", "show", "a.exr"]);
+    assert!(stdout(&again).contains("coverage: 0.625"), "{}", stdout(&again));
+    renders(&folder, &render("a.exr", "b.png", &[]));
+    assert_eq!(png_size(&folder.path().join("b.png")), [64, 36]);
+    let panorama =
+        ["render", "a.exr", "-o", "c.png", "--size", "32x16", "--projection", "equirect", "--quality", "draft"];
+    renders(&folder, &panorama);
+    assert_eq!(png_size(&folder.path().join("c.png")), [32, 16]);
+}
+
+#[test]
+fn sequences_go_on_where_they_stopped() {
+    let folder = folder();
+    let frame = |number: u32| -> PathBuf { folder.path().join(format!("f.{number:04}.png")) };
+    std::fs::write(frame(3), "kept").expect("written");
+    let args = ["--frames", "1-5x2", "--fps", "10"];
+    let output = renders(&folder, &render("clear_puffs", "f.####.png", &args));
+    assert_eq!(stdout(&output).lines().count(), 2, "{}", stdout(&output));
+    assert!(stderr(&output).contains("f.0003.png exists and is kept"), "{}", stderr(&output));
+    assert_eq!(std::fs::read(frame(3)).expect("still there"), b"kept");
+    assert_eq!([png_size(&frame(1)), png_size(&frame(5))], [[64, 36]; 2]);
+    renders(&folder, &render("clear_puffs", "f.####.png", &["--frames", "3", "--overwrite"]));
+    assert_eq!(png_size(&frame(3)), [64, 36], "--overwrite renders it");
+}
+
+#[test]
+fn without_a_display_the_sky_is_rendered() {
+    let folder = folder();
+    let output = renders(&folder, &["--set", "camera.pitch_deg=20", "--set", "quality.resolution_scale=0.1"]);
+    assert!(
+        stderr(&output).contains("no display") && stdout(&output).contains("default-sky.png"),
+        "{}",
+        stderr(&output)
+    );
+    assert!(folder.path().join("out/default-sky.png").is_file(), "it is where it said");
+}
+
+#[test]
+fn bench_prints_the_adapter_the_passes_and_a_banner() {
+    let folder = folder();
+    let args = ["bench", "--presets", "clear_puffs", "--size", "64x36", "--rounds", "1", "--frames", "1"];
+    let output = renders(&folder, &[&args[..], &["--no-full"]].concat());
+    for word in ["llvmpipe", "SOFTWARE ADAPTER", "serialised host time", "clear_puffs", "64×36", "total"] {
+        assert!(stdout(&output).contains(word), "{word}: {}", stdout(&output));
+    }
+    let flight = renders(&folder, &[&args[..], &["--flight", "--csv"]].concat());
+    assert!(stdout(&flight).contains("frames per second"), "{}", stdout(&flight));
+}
