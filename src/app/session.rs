@@ -234,9 +234,9 @@ impl Session {
     }
 }
 
-/// The document of an opened sky; `quality` is kept where the sky says nothing of it.
-pub fn document_of(sky: Sky, quality: Quality) -> Document {
-    let quality = sky.quality.unwrap_or(quality);
+/// The document of an opened sky. The window keeps the user's quality: the level that a preset names, and the settings
+/// that a still was rendered with, are meant for stills, and would make the window crawl.
+pub(super) fn document_of(sky: Sky, quality: Quality) -> Document {
     match sky.origin {
         Origin::Preset(path) => Document::from_file(sky.preset, quality, path),
         Origin::Builtin(_) | Origin::Picture(_) => Document::new(sky.preset, quality),

@@ -21,8 +21,9 @@ use crate::gpu::{AdapterChoice, Gpu};
 use crate::scene::{Quality, UpdateFraction};
 use crate::ui::Readout;
 
-/// Shortest time between two frames of the panels.
+/// Shortest time between two frames of the panels; longer while a picture is being made, which needs the device too.
 const FASTEST_PANELS: Duration = Duration::from_millis(16);
+const FASTEST_PANELS_BESIDE_WORK: Duration = Duration::from_millis(33);
 /// Time between two frames of the panels while something in them moves by itself.
 const MOVING_PANELS: Duration = Duration::from_millis(50);
 /// How often the device is asked whether it has finished a slice.
@@ -239,10 +240,14 @@ impl App {
             return Some(wake);
         }
         let size = self.session.ui.viewport.size_px(live.egui.context().pixels_per_point());
+        let mut fastest = FASTEST_PANELS;
         if self.session.ui.viewport.rect.width() >= 1.0 && self.session.ui.viewport.rect.height() >= 1.0 {
             match live.viewport.step(&self.session.document, size) {
                 Ok(Step::Idle) => {}
-                Ok(Step::Busy) => wake = wake.min(now + POLL),
+                Ok(Step::Busy) => {
+                    fastest = FASTEST_PANELS_BESIDE_WORK;
+                    wake = wake.min(now + POLL);
+                }
                 Ok(Step::Finished) => {
                     live.draw_within(Duration::ZERO);
                     wake = now;
@@ -258,7 +263,7 @@ impl App {
         }
         let live = self.live.as_mut()?;
         if let Some(due) = live.due {
-            let due = due.max(live.drawn + FASTEST_PANELS);
+            let due = due.max(live.drawn + fastest);
             if due <= now {
                 live.window.request_redraw();
             }

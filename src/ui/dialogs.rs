@@ -58,10 +58,11 @@ pub struct ExportForm {
 }
 
 impl ExportForm {
-    /// A full-HD EXR named after the document.
+    /// A full-HD EXR named after the document, at the level that its preset names.
     pub fn for_document(document: &Document) -> Self {
         let path = format!("{}.exr", file_name(document.name()));
-        Self { still: Still::Exr, width: 1920, height: 1080, level: Some(QualityLevel::High), path }
+        let level = Some(document.preset().quality.unwrap_or(QualityLevel::High));
+        Self { still: Still::Exr, width: 1920, height: 1080, level, path }
     }
 
     /// Gives the path the ending that suits the still.

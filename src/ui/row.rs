@@ -243,6 +243,8 @@ pub(super) fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Co
     let help = Help { key, doc: info.doc, range: Some("linear Rec.709, 0 to 100".to_owned()), default: words(info.default) };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
+        ui.spacing_mut().interact_size.x = 24.0;
+        ui.spacing_mut().button_padding.x = 2.0;
         let peak = value.0.max(value.1).max(value.2).max(1.0);
         let mut shown = [value.0 / peak, value.1 / peak, value.2 / peak];
         let swatch = ui.color_edit_button_rgb(&mut shown).on_hover_text("Pick a colour");
@@ -251,7 +253,7 @@ pub(super) fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Co
         if changed {
             *value = Colour(shown[0] * peak, shown[1] * peak, shown[2] * peak);
         }
-        let width = ((ui.available_width() - 6.0) / 3.0).max(20.0);
+        let width = ((ui.available_width() - 6.0) / 3.0).max(24.0);
         let channels = [("red", &mut value.0), ("green", &mut value.1), ("blue", &mut value.2)];
         for (channel, component) in channels {
             let field = DragValue::new(component)
