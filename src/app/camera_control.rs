@@ -90,6 +90,7 @@ fn position(camera: &Camera) -> DVec3 {
 }
 
 /// Puts the camera there, or at the nearest place its parameters allow.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
 fn place(camera: &mut Camera, position: DVec3) {
     camera.east_m = position.x.clamp(-FARTHEST_M, FARTHEST_M) as f32;
     camera.height_m = position.y.clamp(HEIGHT_RANGE_M.0, HEIGHT_RANGE_M.1) as f32;

@@ -24,15 +24,7 @@ pub struct Document {
 impl Document {
     /// A document that shows a preset which is not a file of the user's, with time standing.
     pub fn new(preset: Preset, quality: Quality) -> Self {
-        Self {
-            saved: preset.clone(),
-            preset,
-            quality,
-            path: None,
-            time_secs: 0.0,
-            playing: false,
-            time_factor: 1.0,
-        }
+        Self { saved: preset.clone(), preset, quality, path: None, time_secs: 0.0, playing: false, time_factor: 1.0 }
     }
 
     /// The same for a preset that was read from, and is saved to, `path`.

@@ -41,6 +41,7 @@ impl Egui {
         let context = egui::Context::default();
         ui::style(&context);
         let limit = gpu.device.limits().max_texture_dimension_2d as usize;
+        #[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
         let scale = window.scale_factor() as f32;
         let theme = window.theme();
         let mut state =
@@ -116,6 +117,7 @@ impl Egui {
         again.unwrap_or(Duration::MAX)
     }
 
+    #[allow(clippy::iter_over_hash_type, reason = "textures do not depend on each other")]
     fn draw(&mut self, window: &Window, gpu: &Gpu, surface: &mut WindowSurface, mut output: Output) {
         for (id, deltas) in &output.textures.set {
             for delta in deltas {

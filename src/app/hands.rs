@@ -76,6 +76,7 @@ impl Hands {
     }
 
     /// Notes a raw movement of the mouse.
+    #[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
     pub(super) fn move_mouse(&mut self, (x, y): (f64, f64)) {
         if self.looking.is_some() {
             self.moved += Vec2::new(x as f32, y as f32);

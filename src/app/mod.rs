@@ -26,9 +26,9 @@ use std::path::PathBuf;
 
 use crate::files;
 use crate::gpu::AdapterChoice;
+use crate::scene::Quality;
 use crate::scene::builtin::BUILTINS;
 use crate::scene::edit;
-use crate::scene::Quality;
 
 /// How the editor starts.
 #[derive(Clone, Debug, Default)]

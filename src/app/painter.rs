@@ -200,11 +200,8 @@ impl Painter {
 fn pipeline(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::RenderPipeline {
     let module = device.create_shader_module(wgpu::include_wgsl!("painter.wgsl"));
     let attributes = wgpu::vertex_attr_array![0 => Float32x2, 1 => Float32x2, 2 => Unorm8x4];
-    let add = |src_factor, dst_factor| wgpu::BlendComponent {
-        src_factor,
-        dst_factor,
-        operation: wgpu::BlendOperation::Add,
-    };
+    let add =
+        |src_factor, dst_factor| wgpu::BlendComponent { src_factor, dst_factor, operation: wgpu::BlendOperation::Add };
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("panels"),
         layout: None,
@@ -258,6 +255,7 @@ fn fit(gpu: &Gpu, kept: &mut wgpu::Buffer, bytes: usize) {
 }
 
 /// A rectangle in points as x, y, width, height in pixels; `None` if nothing of it is on the screen.
+#[allow(clippy::cast_possible_truncation, reason = "clamped to 0 ..= limit")]
 fn scissor(rect: egui::Rect, screen: Screen) -> Option<[u32; 4]> {
     let pixel = |points: f32, limit: u32| ((points * screen.pixels_per_point).round().max(0.0) as u32).min(limit);
     let [width, height] = screen.size_px;

@@ -37,11 +37,7 @@ impl Folders {
 
     /// All folders below one.
     pub fn below(root: &Path) -> Self {
-        Self {
-            presets: root.join("presets"),
-            pictures: root.join("pictures"),
-            state: root.join("state"),
-        }
+        Self { presets: root.join("presets"), pictures: root.join("pictures"), state: root.join("state") }
     }
 }
 

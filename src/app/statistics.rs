@@ -22,6 +22,7 @@ impl Recent {
     }
 
     /// The value that a share of all lies below.
+    #[allow(clippy::cast_possible_truncation, reason = "0 ..= length − 1")]
     fn quantile(&self, share: f64) -> Option<f64> {
         let mut sorted: Vec<f64> = self.0.iter().copied().collect();
         sorted.sort_by(f64::total_cmp);
@@ -104,8 +105,7 @@ mod tests {
 
     fn report(passes: &[(&'static str, Option<f64>)]) -> FrameReport {
         let (scene, quality) = (Scene::default(), Quality::default());
-        let frame =
-            Frame { scene: &scene, quality: &quality, size: [1, 1], time_secs: 0.0, output: Output::Display };
+        let frame = Frame { scene: &scene, quality: &quality, size: [1, 1], time_secs: 0.0, output: Output::Display };
         FrameReport {
             plan: FramePlan::new(&frame),
             passes: passes.iter().map(|(pass, millis)| PassTime { pass, millis: *millis }).collect(),

@@ -10,7 +10,12 @@ use crate::ui::{Entry, Library};
 pub(super) fn library(folder: &Path) -> Library {
     let builtin = BUILTINS.iter().filter_map(|builtin| {
         let preset = builtin.preset().ok()?;
-        Some(Entry { name: preset.name, description: preset.description, source: builtin.name.into(), is_builtin: true })
+        Some(Entry {
+            name: preset.name,
+            description: preset.description,
+            source: builtin.name.into(),
+            is_builtin: true,
+        })
     });
     let mut user: Vec<Entry> = Vec::new();
     for file in std::fs::read_dir(folder).into_iter().flatten().flatten() {

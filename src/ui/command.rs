@@ -107,6 +107,12 @@ impl Command {
         })
     }
 
+    /// The key as people read it.
+    pub(super) fn keys(self, context: &egui::Context) -> String {
+        let keys = context.format_shortcut(&self.shortcut());
+        keys.replace("OpenBracket", "[").replace("CloseBracket", "]")
+    }
+
     /// Does it: changes the state, or adds an action.
     pub fn run(self, ui: &Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
         let mut ask = |request| actions.push(Action::Ask(request));

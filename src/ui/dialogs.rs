@@ -60,7 +60,8 @@ pub struct ExportForm {
 impl ExportForm {
     /// A full-HD EXR named after the document, at the level that its preset names.
     pub fn for_document(document: &Document) -> Self {
-        let path = format!("{}.exr", file_name(document.name()));
+        let path = PathBuf::from(format!("{}.exr", file_name(document.name())));
+        let path = std::path::absolute(&path).unwrap_or(path).display().to_string();
         let level = Some(document.preset().quality.unwrap_or(QualityLevel::High));
         Self { still: Still::Exr, width: 1920, height: 1080, level, path }
     }
@@ -314,7 +315,7 @@ fn shortcuts(ui: &mut Ui, height: f32) -> Fate {
                 ui.end_row();
             }
             for command in Command::all() {
-                ui.label(RichText::new(ui.ctx().format_shortcut(&command.shortcut())).strong());
+                ui.label(RichText::new(command.keys(ui.ctx())).strong());
                 ui.label(command.title());
                 ui.end_row();
             }

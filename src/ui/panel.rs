@@ -6,9 +6,7 @@ use egui::{RichText, Ui};
 use super::probe::{Probe, Reset, duplicate_last_from};
 use super::row;
 use crate::app::action::{Action, Browse, Request};
-use crate::scene::param::{
-    Choice, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor,
-};
+use crate::scene::param::{Choice, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor};
 use crate::scene::{MAX_LAYERS, Quality, QualityLevel, Scene};
 
 /// Sections that are unfolded when the program starts for the first time.
@@ -51,7 +49,8 @@ fn filter_row(ui: &mut Ui, state: &mut PanelState) {
     ui.horizontal(|ui| {
         let width = ui.available_width() - 30.0;
         let edit = egui::TextEdit::singleline(&mut state.filter).hint_text("Filter parameters").desired_width(width);
-        let response = ui.add(edit).on_hover_text("Shows only parameters whose name, key or help contains this (Ctrl+F)");
+        let response =
+            ui.add(edit).on_hover_text("Shows only parameters whose name, key or help contains this (Ctrl+F)");
         row::name(ui, &response, "Filter parameters", "filter");
         if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, egui::Key::F)) {
             response.request_focus();
@@ -250,12 +249,13 @@ impl Visitor for Rows<'_> {
         let mut edit = None;
         let mut browse = None;
         let buttons = (&[HeaderButton::Reset][..], probe.modified > 0);
-        let pressed = self.section(Heading { title: info.title, doc: info.doc }, &key, Some(buttons), &mut |ui, key| {
-            let mut rows = Rows::new(ui, filter, format!("{key}."));
-            children(&mut rows);
-            edit = rows.edit.take();
-            browse = rows.browse.take();
-        });
+        let pressed =
+            self.section(Heading { title: info.title, doc: info.doc }, &key, Some(buttons), &mut |ui, key| {
+                let mut rows = Rows::new(ui, filter, format!("{key}."));
+                children(&mut rows);
+                edit = rows.edit.take();
+                browse = rows.browse.take();
+            });
         if pressed == Some(HeaderButton::Reset) {
             children(&mut Reset);
             edit = Some(key);

@@ -64,7 +64,9 @@ fn entries(ui: &mut Ui, entries: &[Entry], search: &str, document: &Document, ac
             Some(path) => *path == entry.source,
             None => entry.is_builtin && document.preset().name == entry.name,
         };
-        let button = egui::Button::selectable(current, entry.name.as_str()).truncate().min_size([ui.available_width(), 0.0].into());
+        let button = egui::Button::selectable(current, entry.name.as_str())
+            .truncate()
+            .min_size([ui.available_width(), 0.0].into());
         let mut response = ui.add(button);
         if !entry.description.is_empty() {
             response = response.on_hover_text(entry.description.as_str());

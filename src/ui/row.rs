@@ -93,6 +93,7 @@ impl RowResult {
 }
 
 /// A number as people write it: five significant digits, no trailing noughts.
+#[allow(clippy::cast_possible_truncation, reason = "the magnitude of a double is within ±324")]
 pub(super) fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return "0".to_owned();
@@ -161,6 +162,7 @@ fn number_control(ui: &mut Ui, scale: &Scale<'_>, value: &mut f64) -> bool {
 }
 
 /// A row for a number.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
 pub(super) fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -> bool {
     let title = info.label();
     let suffix = info.unit.suffix();
@@ -169,8 +171,7 @@ pub(super) fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -
     let show = |value: f32| format!("{}{suffix}", number(f64::from(value)));
     let shown_range = info.range.as_ref().map(|range| format!("{} to {}", show(*range.start()), show(*range.end())));
     let help = Help { key, doc: info.doc, range: shown_range, default: show(info.default) };
-    let scale =
-        Scale { title: &title, key, suffix, range: low..=high, logarithmic: info.logarithmic, whole: false };
+    let scale = Scale { title: &title, key, suffix, range: low..=high, logarithmic: info.logarithmic, whole: false };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
         let mut wide = f64::from(*value);
         let changed = number_control(ui, &scale, &mut wide);
@@ -183,6 +184,7 @@ pub(super) fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -
 }
 
 /// A row for a whole number.
+#[allow(clippy::cast_possible_truncation, reason = "clamped to the parameter's range")]
 pub(super) fn count(ui: &mut Ui, key: &str, info: &Info<u32>, value: &mut u32) -> bool {
     let title = info.label();
     let suffix = info.unit.suffix();
@@ -240,7 +242,8 @@ pub(super) fn choice(ui: &mut Ui, key: &str, info: &ChoiceInfo, index: &mut usiz
 pub(super) fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Colour) -> bool {
     let title = info.label();
     let words = |colour: Colour| format!("{}, {}, {}", colour.0, colour.1, colour.2);
-    let help = Help { key, doc: info.doc, range: Some("linear Rec.709, 0 to 100".to_owned()), default: words(info.default) };
+    let help =
+        Help { key, doc: info.doc, range: Some("linear Rec.709, 0 to 100".to_owned()), default: words(info.default) };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().interact_size.x = 24.0;

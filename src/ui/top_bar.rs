@@ -62,7 +62,7 @@ fn entries(ui: &mut Ui, groups: &[&[Command]], chosen: &mut Option<Command>) {
             ui.separator();
         }
         for command in *group {
-            let keys = ui.ctx().format_shortcut(&command.shortcut());
+            let keys = command.keys(ui.ctx());
             if ui.add(egui::Button::new(command.title()).shortcut_text(keys)).clicked() {
                 *chosen = Some(*command);
                 ui.close();
@@ -122,6 +122,7 @@ fn time(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
 }
 
 /// Seconds as `h:mm:ss`.
+#[allow(clippy::cast_possible_truncation, reason = "centuries fit")]
 fn clock(seconds: f64) -> String {
     let whole = seconds.max(0.0) as u64;
     format!("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)

@@ -56,6 +56,7 @@ impl Default for ViewportState {
 
 impl ViewportState {
     /// Size of the area in pixels of the screen; at least one each.
+    #[allow(clippy::cast_possible_truncation, reason = "screens are smaller")]
     pub fn size_px(&self, pixels_per_point: f32) -> [u32; 2] {
         let side = |points: f32| ((points * pixels_per_point).round() as u32).max(1);
         [side(self.rect.width()), side(self.rect.height())]
