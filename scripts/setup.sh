@@ -19,7 +19,10 @@ ended_on_exit=()
 removed_on_exit=()
 clean_up() {
     local pid
-    for pid in "${ended_on_exit[@]}"; do kill "$pid" 2>/dev/null && wait "$pid" 2>/dev/null; done
+    set +e
+    for pid in "${ended_on_exit[@]}"; do
+        kill "$pid" 2>/dev/null && wait "$pid" 2>/dev/null
+    done
     ((${#removed_on_exit[@]} == 0)) || rm -rf -- "${removed_on_exit[@]}"
 }
 trap clean_up EXIT
