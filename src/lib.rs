@@ -29,3 +29,4 @@ pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod shader;
+pub mod ui;

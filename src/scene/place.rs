@@ -39,7 +39,7 @@ params! {
         /// Whether ground is drawn below the horizon.
         visible: bool = true;
         /// Colour of lit ground (albedo) in the plains.
-        albedo: Colour = Colour(0.07, 0.085, 0.04);
+        albedo: Colour = Colour(0.062, 0.075, 0.036);
         /// Colour of rock and heights.
         rock: Colour = Colour(0.12, 0.11, 0.10);
         /// Height of the mountains. 0 leaves a plain.

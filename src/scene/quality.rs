@@ -70,7 +70,7 @@ params! {
         /// Transmittance below which a ray ends.
         early_exit: f32 = 0.01, 0.0..=0.2, None;
         /// Distance at which the small noise has faded to its mean.
-        detail_distance_m: f32 = 60_000.0, 100.0..=500_000.0, Metres, logarithmic;
+        detail_distance_m: f32 = 25_000.0, 100.0..=500_000.0, Metres, logarithmic;
         /// Coarser (above 0) or finer mip levels of the noises with distance.
         noise_level_bias: f32 = 0.0, -4.0..=4.0, None;
         /// Share of pixels computed anew in a frame.
@@ -114,6 +114,7 @@ impl Quality {
                 light_detail_steps: 3,
                 octaves: 6,
                 early_exit: 0.004,
+                detail_distance_m: 40_000.0,
                 update: UpdateFraction::Full,
                 shadow_map_px: 384,
                 shaft_samples: 48,
