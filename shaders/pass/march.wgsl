@@ -9,9 +9,7 @@
 #import "common/update.wgsl"
 #import "generated/BandUniforms.wgsl"
 #import "pass/cloud_field.wgsl"
-#if AIR
 #import "light/sky.wgsl"
-#endif
 
 override OCTAVES: u32 = 1u;
 

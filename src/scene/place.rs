@@ -45,7 +45,7 @@ params! {
         /// Height of the mountains. 0 leaves a plain.
         mountains_m: f32 = 0.0, 0.0..=5000.0, Metres;
         /// Distance from one range to the next.
-        mountain_size_m: f32 = 14_000.0, 1000.0..=100_000.0, Metres, logarithmic;
+        mountain_size_m: f32 = 6000.0, 1000.0..=100_000.0, Metres, logarithmic;
         /// Height of the hills between them.
         hills_m: f32 = 60.0, 0.0..=1000.0, Metres;
         /// Seed of the terrain.
