@@ -6,6 +6,7 @@ mod gpu {
     mod math;
     mod noise;
     mod phase;
+    mod physics;
     mod random;
     mod shaders;
     mod shell;

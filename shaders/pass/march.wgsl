@@ -8,10 +8,8 @@
 #import "common/camera.wgsl"
 #import "common/update.wgsl"
 #import "generated/BandUniforms.wgsl"
-#import "pass/cloud_field.wgsl"
-#if AIR
 #import "light/sky.wgsl"
-#endif
+#import "pass/cloud_field.wgsl"
 
 override OCTAVES: u32 = 1u;
 
@@ -140,36 +138,39 @@ fn media_at(p: vec3f, distance_m: f32, reading: Reading) -> Media {
 
 var<private> steps_left: u32;
 
-// Count of clear steps of a ray that has not met cloud yet.
+// Count of clear steps of a stretch that nothing was read of yet.
 const FRESH_START: u32 = 100000u;
 
-// One stretch of the ray.
+// One stretch of the ray. It is cut into cells without gap or overlap, each read at the same share of its length, so that
+// the cells of even cloud absorb what the stretch absorbs, whatever the jitter.
 fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
   var seen = seen_before;
-  var t = segment.x + jitter * (scene.step_m + scene.step_growth * segment.x);
+  var start = segment.x;
   // Short steps since the last cloud; long ones are allowed after a few.
   var clear_steps = FRESH_START;
-  while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
+  while (start < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
     steps_left -= 1u;
 #if COUNT
     atomicAdd(&counters[1], 1u);
 #endif
-    let step = scene.step_m + scene.step_growth * t;
+    let short_step = scene.step_m + scene.step_growth * start;
+    // Deep inside, where little is left to see, two short steps become one.
+    let step = short_step * select(1.0, 2.0, seen.transmittance < 0.1);
+    let length = min(step, segment.y - start);
+    let t = start + jitter * length;
     let fade = clamp(t / scene.detail_distance_m, 0.0, 1.0);
-    let level = max(0.0, log2(max(step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
+    let level = max(0.0, log2(max(short_step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
     let media = media_at(origin + dir * t, t, Reading(level, fade < 1.0, fade));
     if (media.extinction <= 0.0) {
       clear_steps += 1u;
-      t += step * select(1.0, scene.empty_stride, clear_steps > 4u);
-    } else if (clear_steps > 4u && clear_steps < FRESH_START && scene.empty_stride > 1.0) {
+      start += step * select(1.0, scene.empty_stride, clear_steps > 4u);
+    } else if (clear_steps > 4u && clear_steps != FRESH_START && scene.empty_stride > 1.0) {
       // Entered by a long step: go back to where the first short one would have been.
       clear_steps = 0u;
-      t -= step * (scene.empty_stride - 1.0);
+      start -= step * (scene.empty_stride - 1.0);
     } else {
       clear_steps = 0u;
-      // Deep inside, where little is left to see, two short steps become one.
-      let length = select(step, 2.0 * step, seen.transmittance < 0.1);
-      let alpha = absorbed(media.extinction * min(length, max(segment.y - t + 0.5 * step, 0.0)));
+      let alpha = absorbed(media.extinction * length);
       let share = seen.transmittance * alpha;
 #if AIR
       let ahead = air_before(dir, t);
@@ -180,7 +181,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       seen.distance_sum += share * t;
       seen.weight_sum += share;
       seen.transmittance *= 1.0 - alpha;
-      t += length;
+      start += length;
     }
   }
   return seen;
