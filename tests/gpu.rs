@@ -3,6 +3,7 @@
 mod common;
 
 mod gpu {
+    mod density;
     mod math;
     mod noise;
     mod phase;
@@ -10,4 +11,5 @@ mod gpu {
     mod random;
     mod shaders;
     mod shell;
+    mod textures;
 }

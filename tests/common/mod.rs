@@ -1,6 +1,7 @@
 //! What the GPU tests share: the software device, clouds of their own for the march, and a runner for `shaders/test/eval_*.wgsl`.
 
 pub(crate) mod field;
+pub(crate) mod sky;
 pub(crate) mod slab;
 
 use std::collections::BTreeSet;
