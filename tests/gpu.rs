@@ -3,7 +3,9 @@
 mod common;
 
 mod gpu {
+    mod absent;
     mod density;
+    mod frames;
     mod math;
     mod noise;
     mod phase;
@@ -11,5 +13,6 @@ mod gpu {
     mod random;
     mod shaders;
     mod shell;
+    mod temporal;
     mod textures;
 }
