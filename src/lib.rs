@@ -11,3 +11,4 @@ pub mod reference;
 pub mod render;
 pub mod scene;
 pub mod shader;
+pub mod ui;

@@ -4,7 +4,7 @@
 
 // The raw field is roughly normal; this spreads it so that the share above 1 - c is about c.
 fn spread_evenly(field: f32) -> f32 {
-  return 1.0 / (1.0 + exp(-10.5 * (field - 0.467)));
+  return 1.0 / (1.0 + exp(-9.5 * (field - 0.455)));
 }
 
 // Cumulus, stratus or stratocumulus, drawn for a cell by the user's weights.

@@ -57,7 +57,7 @@ fn near_surface(field: f32) -> bool {
 
 // Density 0..1. Liquid water grows with height above the base, nearly as its power 2/3 (Brenguier et al. 2000).
 fn profile_density(field: f32, layer: LayerUniforms, h: f32) -> f32 {
-  let solid = clamp(field * 2.5 * layer.sharpness, 0.0, 1.0);
+  let solid = clamp(field * 1.7 * layer.sharpness, 0.0, 1.0);
   return solid * mix(0.45, 1.0, clamp(h * 1.2, 0.0, 1.0));
 }
 
@@ -67,5 +67,5 @@ fn profile_bound(greatest_body: f32, layer: LayerUniforms) -> f32 {
   let strength = max(layer.shape_strength, 0.0);
   let lumps = smoothstep(0.04, 0.40, body);
   let field = (1.2 * body - 0.35 + max(strength * (lumps - 0.65), 0.7 * strength * (lumps - 0.65))) * 2.2;
-  return clamp(field * 2.5 * layer.sharpness, 0.0, 1.0);
+  return clamp(field * 1.7 * layer.sharpness, 0.0, 1.0);
 }

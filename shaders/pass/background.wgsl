@@ -81,7 +81,7 @@ fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
   var t = start;
   var before = start;
   var is_hit = false;
-  for (var i = 0u; i < 96u; i++) {
+  for (var i = 0u; i < 110u; i++) {
     if (t >= end) {
       break;
     }
@@ -91,7 +91,7 @@ fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
       break;
     }
     before = t;
-    t += max(clearance * 0.7, 4.0 + 0.006 * t);
+    t += max(clearance * 0.6, 10.0 + 0.045 * t);
   }
   for (var k = 0u; k < 6u; k++) {
     let middle = 0.5 * (before + t);
@@ -135,10 +135,11 @@ fn ground_albedo(p: vec3f, normal: vec3f, distance_m: f32) -> vec3f {
   var albedo = ground.albedo;
 #if TERRAIN
   let uv = p.xz * ground.tile_from_world.z + ground.tile_from_world.xy;
-  let patches = textureSampleLevel(terrain_map, linear_repeat, uv * 5.0, 0.0).z;
-  let fields = textureSampleLevel(terrain_map, linear_repeat, uv * 23.0, 0.0).z;
+  let patches = textureSampleLevel(terrain_map, linear_repeat, uv * 31.0, 0.0).z;
+  let fields = textureSampleLevel(terrain_map, linear_repeat, uv * 173.0, 0.0).z;
   let fade = exp(-distance_m / 25000.0);
-  albedo *= 0.75 + 0.5 * patches + (fields - 0.5) * 0.5 * fade;
+  albedo *= 0.45 + 1.1 * patches + (fields - 0.5) * 0.9 * fade;
+  albedo = mix(albedo, albedo.grr * vec3f(0.95, 0.85, 0.6), clamp(fields * 2.0 - 0.9, 0.0, 0.6));
   let height = ground_height(p.xz);
   let rocky = smoothstep(0.90, 0.72, normal.y) + smoothstep(0.35, 0.8, height / max(ground.mountains_m, 1.0));
   albedo = mix(albedo, ground.rock, clamp(rocky, 0.0, 1.0) * step(1.0, ground.mountains_m));
@@ -147,13 +148,14 @@ fn ground_albedo(p: vec3f, normal: vec3f, distance_m: f32) -> vec3f {
 }
 
 #if SHADOW
-// Share of the key light that cloud lets through to a place on the ground.
-fn light_through_cloud(p: vec3f) -> f32 {
+// Share of the key light that cloud lets through to a place on the ground: straight, and scattered downwards.
+fn light_through_cloud(p: vec3f) -> vec2f {
   let foot = p - ground.towards_light * (p.y / max(ground.towards_light.y, 0.05));
   let uv = foot.xz * ground.shadow_from_world.z + ground.shadow_from_world.xy;
   let edge = clamp((0.5 - max(abs(uv.x - 0.5), abs(uv.y - 0.5))) * 8.0, 0.0, 1.0);
-  let mapped = textureSampleLevel(cloud_shadow, linear_clamp, uv, 0.0).x;
-  return mix(1.0, mix(ground.mean_shadow, mapped, edge), ground.shadow_strength);
+  let mapped = textureSampleLevel(cloud_shadow, linear_clamp, uv, 0.0).xy;
+  let beyond = vec2f(ground.mean_shadow, 0.4 * (1.0 - ground.mean_shadow));
+  return mix(vec2f(1.0, 0.0), mix(beyond, mapped, edge), ground.shadow_strength);
 }
 #endif
 
@@ -162,11 +164,14 @@ fn ground_light(p: vec3f, distance_m: f32) -> vec3f {
   let altitude = max(altitude_at(p, ground.planet_radius_m), 0.0);
   let cosine = light_cos_zenith(p, ground.towards_light, ground.planet_radius_m);
   var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
+  var scattered = vec3f(0.0);
 #if SHADOW
-  key *= light_through_cloud(p);
+  let through = light_through_cloud(p);
+  scattered = key * through.y * max(ground.towards_light.y, 0.0) / PI;
+  key *= through.x;
 #endif
   let sky = textureLoad(sky_ambient, vec2u(3u, 0u), 0).rgb * (0.6 + 0.4 * normal.y);
-  return ground_albedo(p, normal, distance_m) * (key * max(dot(normal, ground.towards_light), 0.0) / PI + sky);
+  return ground_albedo(p, normal, distance_m) * (key * max(dot(normal, ground.towards_light), 0.0) / PI + scattered + sky);
 }
 #endif
 

@@ -35,8 +35,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   let p = vec3f((vec2f(texel) + 0.5) / vec2f(size), 0.37);
   let seed = relief.seed * 32u;
   // Ranges stand in regions, with plains between.
-  let region = smoothstep(-0.05, 0.35, perlin_fbm(p, 4, 3, seed));
-  let ranges = region * ridges(p, 7, seed + 8u);
+  let region = smoothstep(-0.10, 0.14, perlin_fbm(p, 4, 3, seed));
+  let ranges = region * clamp(ridges(p, 7, seed + 8u) * 1.7 - 0.25, 0.0, 1.0);
   let hills = clamp(perlin_fbm(p, 24, 4, seed + 16u) * 0.9 + 0.5, 0.0, 1.0);
   let patches = clamp(perlin_fbm(p, 16, 5, seed + 24u) + 0.5, 0.0, 1.0);
   textureStore(relief_out, texel, vec4f(ranges, hills, patches, 0.0));

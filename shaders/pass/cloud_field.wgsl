@@ -220,7 +220,8 @@ fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
   for (var i = 0u; i < scene.light_steps; i++) {
     let q = p + scene.towards_light * (t + 0.5 * step);
     depth += shadow_extinction(q, Reading(level, i < scene.light_detail_steps, 0.0)) * step;
-    if (depth > 24.0) {
+    // Beyond this not even the widest octave passes anything.
+    if (depth > 600.0) {
       break;
     }
     t += step;

@@ -1,4 +1,5 @@
-// The share of the key light that clouds let through to the ground, on a map around the eye.
+// The share of the key light that clouds let through to the ground, on a map around the eye: straight in red, scattered
+// downwards in green.
 #import "generated/BandUniforms.wgsl"
 #import "generated/GroundUniforms.wgsl"
 #import "pass/cloud_field.wgsl"
@@ -29,5 +30,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
       depth += shadow_extinction(q, Reading(1.0, false, 1.0)) * step;
     }
   }
-  textureStore(shadow_out, texel, vec4f(exp(-depth), 0.0, 0.0, 0.0));
+  // What droplets scatter downwards passes as through a two-stream layer of asymmetry 0.85.
+  let direct = exp(-depth);
+  let diffuse = 1.0 / (1.0 + 0.75 * 0.15 * depth) - direct;
+  textureStore(shadow_out, texel, vec4f(direct, max(diffuse, 0.0), 0.0, 0.0));
 }

@@ -8,8 +8,8 @@
 #import "common/camera.wgsl"
 #import "common/update.wgsl"
 #import "generated/BandUniforms.wgsl"
-#import "light/sky.wgsl"
 #import "pass/cloud_field.wgsl"
+#import "light/sky.wgsl"
 
 override OCTAVES: u32 = 1u;
 
@@ -138,38 +138,49 @@ fn media_at(p: vec3f, distance_m: f32, reading: Reading) -> Media {
 
 var<private> steps_left: u32;
 
-// Count of clear steps of a stretch that nothing was read of yet.
-const FRESH_START: u32 = 100000u;
+// Length of the steps that look for a surface, relative to ordinary ones.
+const SURFACE_STEP: f32 = 0.2;
+// Clear samples after which long steps are taken.
+const CLEAR_SAMPLES: u32 = 6u;
 
-// One stretch of the ray. It is cut into cells without gap or overlap, each read at the same share of its length, so that
-// the cells of even cloud absorb what the stretch absorbs, whatever the jitter.
+// One stretch of the ray. Three lengths of step: long ones in clear air; on meeting cloud a step back, and short ones
+// to find its surface; inside, steps of equal optical depth, longer where little is left to see.
 fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
   var seen = seen_before;
-  var start = segment.x;
-  // Short steps since the last cloud; long ones are allowed after a few.
-  var clear_steps = FRESH_START;
-  while (start < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
+  // How much of the way before a sample still counts as its own: the last step makes up for it, so that even cloud
+  // absorbs what the whole stretch absorbs, whatever the jitter.
+  var behind = jitter * (scene.step_m + scene.step_growth * segment.x);
+  var t = segment.x + behind;
+  var advanced = 0.0;
+  var clear_samples = CLEAR_SAMPLES;
+  while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
     steps_left -= 1u;
 #if COUNT
     atomicAdd(&counters[1], 1u);
 #endif
-    let short_step = scene.step_m + scene.step_growth * start;
-    // Deep inside, where little is left to see, two short steps become one.
-    let step = short_step * select(1.0, 2.0, seen.transmittance < 0.1);
-    let length = min(step, segment.y - start);
-    let t = start + jitter * length;
+    let step = scene.step_m + scene.step_growth * t;
+    let surface_step = step * SURFACE_STEP;
     let fade = clamp(t / scene.detail_distance_m, 0.0, 1.0);
-    let level = max(0.0, log2(max(short_step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
+    let level = max(0.0, log2(max(step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
     let media = media_at(origin + dir * t, t, Reading(level, fade < 1.0, fade));
     if (media.extinction <= 0.0) {
-      clear_steps += 1u;
-      start += step * select(1.0, scene.empty_stride, clear_steps > 4u);
-    } else if (clear_steps > 4u && clear_steps != FRESH_START && scene.empty_stride > 1.0) {
-      // Entered by a long step: go back to where the first short one would have been.
-      clear_steps = 0u;
-      start -= step * (scene.empty_stride - 1.0);
+      clear_samples += 1u;
+      let ordinary = select(step, step * scene.empty_stride, clear_samples > CLEAR_SAMPLES + 3u);
+      advanced = select(surface_step, ordinary, clear_samples > CLEAR_SAMPLES);
+      // On average cloud begins half way to the next sample.
+      behind = 0.5 * advanced;
+      t += advanced;
+    } else if (advanced > 1.5 * surface_step && media.extinction * step > 0.5 * scene.step_depth) {
+      // Entered a dense cloud from clear air: go back to look for its surface.
+      t -= advanced - surface_step;
+      behind = 0.5 * surface_step;
+      advanced = 0.0;
+      clear_samples = 0u;
     } else {
-      clear_steps = 0u;
+      clear_samples = 0u;
+      advanced = 0.0;
+      let wanted = min(step, max(scene.step_depth / (media.extinction * max(seen.transmittance, 0.15)), surface_step));
+      let length = select(wanted, segment.y - t + behind, t + wanted >= segment.y);
       let alpha = absorbed(media.extinction * length);
       let share = seen.transmittance * alpha;
 #if AIR
@@ -181,7 +192,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       seen.distance_sum += share * t;
       seen.weight_sum += share;
       seen.transmittance *= 1.0 - alpha;
-      start += length;
+      t += length;
     }
   }
   return seen;

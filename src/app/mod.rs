@@ -1,8 +1,34 @@
-//! The editor's window.
+//! The editor: a window on a [`Document`], its panels, and the renderer behind the picture.
+//!
+//! Panels return [`action::Action`]s; [`Session`] carries them out on the document and returns what concerns windows
+//! and threads; [`window::App`] does that, and keeps the picture and the panels going beside each other.
+
+pub mod action;
+pub mod camera_control;
+pub mod document;
+mod egui_glue;
+mod hands;
+mod painter;
+mod recovery;
+pub mod session;
+mod statistics;
+mod storage;
+mod surface;
+mod viewport;
+mod window;
+mod worker;
+
+pub use action::Action;
+pub use document::Document;
+pub use session::{Folders, Session};
 
 use std::path::PathBuf;
 
+use crate::files;
 use crate::gpu::AdapterChoice;
+use crate::scene::Quality;
+use crate::scene::builtin::BUILTINS;
+use crate::scene::edit;
 
 /// How the editor starts.
 #[derive(Clone, Debug, Default)]
@@ -15,11 +41,36 @@ pub struct Options {
     pub sets: Vec<String>,
 }
 
+/// There is no display to open a window on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "no display: {0}. Start the editor from a desktop session, \
+     or render without a window: nephoscope render SCENE -o out.png"
+)]
+pub struct NoDisplay(pub String);
+
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// If no window or no device can be had.
+/// [`NoDisplay`] if no window can be had; else what the scene, the display or the device says.
 pub fn run(options: Options) -> anyhow::Result<()> {
-    let _ = options;
-    Ok(())
+    let has = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    if cfg!(all(unix, not(target_os = "macos"))) && !has("DISPLAY") && !has("WAYLAND_DISPLAY") {
+        return Err(NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()).into());
+    }
+    let document = open(&options)?;
+    let folders = Folders::of_user();
+    window::run(Session::new(document, folders), options.adapter)
+}
+
+/// The document that the options ask for.
+fn open(options: &Options) -> anyhow::Result<Document> {
+    let first = BUILTINS.first().map(|builtin| PathBuf::from(builtin.name));
+    let source = options.scene.clone().or(first).unwrap_or_default();
+    let mut document = session::document_of(files::open(&source)?, Quality::default());
+    let (mut scene, mut quality) = (document.preset().scene.clone(), document.quality().clone());
+    edit::apply(&options.sets, &mut scene, &mut quality)?;
+    document.apply(&Action::EditScene { key: "--set".to_owned(), scene: Box::new(scene) });
+    document.apply(&Action::EditQuality { key: "--set".to_owned(), quality: Box::new(quality) });
+    Ok(document)
 }

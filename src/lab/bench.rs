@@ -243,8 +243,12 @@ mod tests {
 
     #[test]
     fn passes_are_told_apart_by_when_they_run() {
+        let (scene, quality) = (Scene::default(), Quality::default());
+        let frame =
+            Frame { scene: &scene, quality: &quality, size: [64, 36], time_secs: 0.0, output: Output::default() };
+        let plan = FramePlan::new(&frame);
         let report = |passes: &[(&'static str, f64)], total_ms| FrameReport {
-            plan: FramePlan { reasons: Vec::new() },
+            plan: plan.clone(),
             passes: passes.iter().map(|(pass, millis)| PassTime { pass, millis: Some(*millis) }).collect(),
             source: TimingSource::SerialisedHost,
             total_ms,

@@ -102,7 +102,8 @@ mod tests {
 
     #[test]
     fn every_pixel_gets_its_turn_once() {
-        for fraction in [UpdateFraction::Full, UpdateFraction::Half, UpdateFraction::Quarter, UpdateFraction::Sixteenth] {
+        for fraction in [UpdateFraction::Full, UpdateFraction::Half, UpdateFraction::Quarter, UpdateFraction::Sixteenth]
+        {
             for order in [UpdateOrder::Cross, UpdateOrder::Sevens, UpdateOrder::Naive] {
                 let pattern = UpdatePattern::new(fraction, order);
                 let places: BTreeSet<[u32; 2]> = (0..pattern.phases()).map(|phase| pattern.offset(phase)).collect();
@@ -125,7 +126,13 @@ mod tests {
     fn camera_and_exposure_keep_history_and_clouds_do_not() {
         let quality = Quality::default();
         let key = |scene: &Scene| {
-            HistoryKey::new(&Frame { scene, quality: &quality, size: [64, 36], time_secs: 0.0, output: Output::Display })
+            HistoryKey::new(&Frame {
+                scene,
+                quality: &quality,
+                size: [64, 36],
+                time_secs: 0.0,
+                output: Output::Display,
+            })
         };
         let scene = Scene::default();
         let mut moved = scene.clone();

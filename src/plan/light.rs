@@ -50,6 +50,7 @@ fn tint(colour: Colour) -> Vec3 {
 
 impl Lighting {
     /// The lights of a scene.
+    #[allow(clippy::cast_possible_truncation, reason = "the range of f32 is ample for a scale")]
     pub fn new(scene: &Scene) -> Self {
         let towards_sun = scene.towards_sun();
         let towards_moon = scene.towards_moon();
@@ -98,7 +99,11 @@ mod tests {
         let mut before = at(5.0).candela_per_unit;
         for step in 0..300 {
             let now = at(5.0 - step as f32 * 0.1).candela_per_unit;
-            assert!(now > 0.0 && (now / before).ln().abs() < 0.35, "at {}°: {before} then {now}", 5.0 - step as f32 * 0.1);
+            assert!(
+                now > 0.0 && (now / before).ln().abs() < 0.35,
+                "at {}°: {before} then {now}",
+                5.0 - step as f32 * 0.1
+            );
             before = now;
         }
     }

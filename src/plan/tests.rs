@@ -31,7 +31,9 @@ fn the_default_sky_calls_for_clouds_ground_shadows_and_history() {
 #[test]
 fn strength_zero_leaves_no_trace() {
     let march = |change: fn(&mut Scene)| plan_of(|scene, _| change(scene)).march.expect("clouds");
-    assert!(!march(|scene| scene.layers[0].detail_strength = 0.0).flags().any(|flag| flag == "DETAIL" || flag == "CURL"));
+    assert!(
+        !march(|scene| scene.layers[0].detail_strength = 0.0).flags().any(|flag| flag == "DETAIL" || flag == "CURL")
+    );
     assert!(!march(|scene| scene.layers[0].curl_m = 0.0).curl);
     assert!(!march(|scene| scene.air.aerial_perspective = false).air);
     assert!(march(|scene| scene.weather.coverage_changes = true).front);

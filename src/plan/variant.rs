@@ -58,7 +58,12 @@ impl MarchVariant {
         let octaves = if lit { frame.quality.octaves } else { 0 };
         why.either(octaves > 0, "scattering octaves", format!("{octaves} on top of the first"), "only the first order");
         let air = scene.air.aerial_perspective && frame.output != Output::CloudsAlone;
-        why.either(air, "aerial perspective", "air lies before the clouds", "it is switched off, or clouds stand alone");
+        why.either(
+            air,
+            "aerial perspective",
+            "air lies before the clouds",
+            "it is switched off, or clouds stand alone",
+        );
         Some(Self {
             layers: u32::try_from(layers.len()).unwrap_or(1),
             octaves,
@@ -78,7 +83,14 @@ impl MarchVariant {
     /// Parts of the shader that add a binding are switched by text, or the layout would still need them.
     pub fn flags(self) -> impl Iterator<Item = &'static str> {
         let on = [
-            self.profile, self.thesis, self.uniform, self.detail, self.curl, self.front, self.air, self.ground,
+            self.profile,
+            self.thesis,
+            self.uniform,
+            self.detail,
+            self.curl,
+            self.front,
+            self.air,
+            self.ground,
             self.float,
         ];
         Self::FLAGS.into_iter().zip(on).filter_map(|(flag, on)| on.then_some(flag))

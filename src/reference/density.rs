@@ -89,7 +89,7 @@ pub fn eroded(field: f32, amount: f32) -> f32 {
 /// Density of the profile model, 0 to 1.
 #[must_use]
 pub fn profile_density(field: f32, layer: &LayerUniforms, h: f32) -> f32 {
-    (field * 2.5 * layer.sharpness).clamp(0.0, 1.0) * mix(0.45, 1.0, (h * 1.2).clamp(0.0, 1.0))
+    (field * 1.7 * layer.sharpness).clamp(0.0, 1.0) * mix(0.45, 1.0, (h * 1.2).clamp(0.0, 1.0))
 }
 
 fn trapezoid(h: f32, [a, b, c, d]: [f32; 4]) -> f32 {
@@ -145,7 +145,7 @@ pub fn map_texel(uv: Vec2, map: &MapUniforms) -> Vec4 {
     let size = smoothstep(middle - 0.15, middle + 0.15, region);
     let cellular = mix(puffs * 0.92, fields * 1.06, size);
     let field = mix(cellular, region, 0.8 * map.contrast) + fray * 0.63 * map.fray;
-    let spread = 1.0 / (1.0 + (-10.5 * (field - 0.467)).exp());
+    let spread = 1.0 / (1.0 + (-9.5 * (field - 0.455)).exp());
     (spread * type_of_cell(large.id, map)).extend(smoothstep(0.3, 0.75, region))
 }
 

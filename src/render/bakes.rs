@@ -29,7 +29,7 @@ pub(super) struct Bakes {
 
 impl Bakes {
     pub(super) fn new(gpu: &Gpu) -> Result<Self, GpuError> {
-        let side = blue_noise::SIDE as u32;
+        let side = blue_noise::SIDE_PX;
         let blue_noise = Texture::new_2d(gpu, "blue_noise", [side, side], wgpu::TextureFormat::R32Float)?;
         gpu.queue.write_texture(
             blue_noise.texture.as_image_copy(),
@@ -145,7 +145,7 @@ pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
         ("pass/weather_map.wgsl", march.is_some()),
         ("pass/weather_blend.wgsl", march.is_some()),
     ];
-    all.into_iter().filter_map(|(file, wanted)| wanted.then(|| ProgramKey::plain(file))).collect()
+    all.into_iter().filter(|(_, wanted)| *wanted).map(|(file, _)| ProgramKey::plain(file)).collect()
 }
 
 /// A 3D noise: its pass, its shader, its size.

@@ -2,7 +2,8 @@
 //! lie far apart.
 
 /// Edge length of the tile.
-pub(super) const SIDE: usize = 64;
+pub(super) const SIDE_PX: u32 = 64;
+const SIDE: usize = SIDE_PX as usize;
 
 const TEXELS: usize = SIDE * SIDE;
 const SIGMA: f32 = 1.9;
@@ -79,6 +80,7 @@ pub(super) fn ranks() -> Vec<u16> {
 }
 
 /// Takes the start pattern apart for the low ranks, then fills voids for the others.
+#[allow(clippy::cast_possible_truncation, reason = "ranks are below the number of texels, 4096")]
 fn rank(mut energy: Energy, mut chosen: Vec<bool>, start_count: usize) -> Vec<u16> {
     let mut ranks = vec![0_u16; TEXELS];
     let start = (chosen.clone(), energy.values.clone());

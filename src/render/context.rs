@@ -29,6 +29,7 @@ impl Pace {
     }
 
     /// Rows that fit in `slice_ms`, at least one; a sixteenth of all while nothing is known.
+    #[allow(clippy::cast_possible_truncation, reason = "a count of rows, clamped")]
     fn rows(&self, pass: &'static str, all: u32, slice_ms: f64) -> u32 {
         match self.ms_per_row.get(pass) {
             Some(millis) => ((slice_ms / millis.max(1e-6)).floor() as u32).clamp(1, all.max(1)),

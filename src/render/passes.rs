@@ -32,13 +32,18 @@ impl FrameBuffers {
         bound
     }
 
-    pub(super) fn new(context: &Context<'_>, view: &ViewUniforms, scene: &SceneUniforms, ground: &GroundUniforms) -> Self {
+    pub(super) fn new(
+        context: &Context<'_>,
+        view: &ViewUniforms,
+        scene: &SceneUniforms,
+        ground: &GroundUniforms,
+    ) -> Self {
         let uniform = |label, bytes| context.gpu.uniform(label, bytes);
         Self {
             view: uniform("view", bytemuck::bytes_of(view)),
             scene: uniform("scene", bytemuck::bytes_of(scene)),
             ground: uniform("ground", bytemuck::bytes_of(ground)),
-            display: uniform("display", &[0; 16]),
+            display: uniform("display", &[0; 32]),
             shafts: None,
         }
     }
@@ -177,8 +182,7 @@ impl<'a> Passes<'a> {
         let (Some(marched), Some(march)) = (&targets.marched, self.plan.march) else {
             return Ok(None);
         };
-        let mut own =
-            vec![("cloud_out", view_of(&marched.light)), ("distance_out", view_of(&marched.distance))];
+        let mut own = vec![("cloud_out", view_of(&marched.light)), ("distance_out", view_of(&marched.distance))];
         if let Some(distance) = &targets.ground_distance {
             own.push(("ground_distance", view_of(distance)));
         }
@@ -235,7 +239,11 @@ impl<'a> Passes<'a> {
     }
 
     /// Linear light for a file, and the picture for the screen.
-    pub(super) fn finish(&mut self, cloud: Option<&'a CloudTarget>, display: &'a crate::gpu::Texture) -> Result<(), GpuError> {
+    pub(super) fn finish(
+        &mut self,
+        cloud: Option<&'a CloudTarget>,
+        display: &'a crate::gpu::Texture,
+    ) -> Result<(), GpuError> {
         let targets = self.targets;
         let mut own = vec![("background", view_of(&targets.background)), ("display_out", view_of(display))];
         if let Some(cloud) = cloud {

@@ -51,8 +51,8 @@ impl Renderer {
         let targets = &*self.targets.insert(targets);
         let key = HistoryKey::new(frame);
         let usable = self.history.take().filter(|history| !is_new && is_continued(history, &key, frame, &eye));
-        let phase = usable.as_ref().map_or(0, |history| history.phase + 1);
-        let view = view_uniforms(frame, &plan, &eye, usable.as_ref(), phase, &lighting);
+        let phase = next_phase(usable.as_ref());
+        let view = view_uniforms(frame, &plan, &eye, usable.as_ref(), &lighting);
         let shadow_px = plan.ground.and_then(|ground| ground.shadow_px).unwrap_or(1);
         let mut buffers = FrameBuffers::new(
             &context,
@@ -97,8 +97,8 @@ impl Renderer {
 /// Whether a picture still says anything about the next one.
 fn is_continued(history: &History, key: &HistoryKey, frame: &Frame<'_>, eye: &Eye) -> bool {
     let looked = |eye: &Eye| direction(eye.heading_pitch_deg[1], eye.heading_pitch_deg[0]);
-    let turned_too_far = looked(&history.eye).dot(looked(eye)) < CUT_COSINE
-        && frame.scene.camera.projection == Projection::Perspective;
+    let turned_too_far =
+        looked(&history.eye).dot(looked(eye)) < CUT_COSINE && frame.scene.camera.projection == Projection::Perspective;
     let carried = uniforms::wind_mps(&frame.scene.wind).length() * (frame.time_secs - history.time_secs).abs();
     history.key == *key
         && history.eye.position.distance(eye.position) < CUT_DISTANCE_M
@@ -107,12 +107,17 @@ fn is_continued(history: &History, key: &HistoryKey, frame: &Frame<'_>, eye: &Ey
         && frame.time_secs.is_finite()
 }
 
+/// Which phase of the update pattern comes next; a fresh picture begins with the first.
+fn next_phase(history: Option<&History>) -> u32 {
+    history.map_or(0, |history| history.phase.wrapping_add(1))
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "the way of the wind between two frames is short enough for f32")]
 fn view_uniforms(
     frame: &Frame<'_>,
     plan: &FramePlan,
     eye: &Eye,
     history: Option<&History>,
-    phase: u32,
     lighting: &Lighting,
 ) -> ViewUniforms {
     let scene = frame.scene;
@@ -122,7 +127,7 @@ fn view_uniforms(
     let wind_scale = scene.visible_layers().next().map_or(1.0, |layer| f64::from(layer.wind_scale));
     let motion = uniforms::wind_mps(&scene.wind) * wind_scale * elapsed;
     let (block, offset, is_checkerboard) = plan.temporal.map_or(([1, 1], [0, 0], false), |pattern| {
-        (pattern.block(), pattern.offset(phase), pattern.is_checkerboard())
+        (pattern.block(), pattern.offset(next_phase(history)), pattern.is_checkerboard())
     });
     let height = size[1] as f32;
     let pixel_angle = match scene.camera.projection {

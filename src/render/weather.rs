@@ -56,8 +56,8 @@ impl WeatherMap {
     ) -> Result<(), RenderError> {
         let mut wanted = Vec::new();
         for (index, layer) in weather.layers.iter().enumerate() {
-            let states = states_at(layer, weather, time_secs)
-                .map_err(|message| RenderError::Map { layer: index, message })?;
+            let states =
+                states_at(layer, weather, time_secs).map_err(|message| RenderError::Map { layer: index, message })?;
             for key in [&states.0, &states.1] {
                 if !self.states.iter().any(|state| state.key == *key) {
                     let texture = make_state(context, key, jobs).map_err(|error| error.in_layer(index))?;
@@ -128,6 +128,7 @@ impl WeatherMap {
 }
 
 /// The two states a layer is between at a time, and the share of the later one.
+#[allow(clippy::cast_possible_truncation, reason = "counts of states and images are small; shares are in 0..1")]
 fn states_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<(StateKey, StateKey, f32), String> {
     match layer.source {
         MapSource::Generated => {
@@ -189,6 +190,7 @@ impl From<GpuError> for StateError {
     }
 }
 
+#[allow(clippy::cast_possible_truncation, reason = "a phase in 0..1")]
 fn make_state(context: &Context<'_>, key: &StateKey, jobs: &mut Vec<Job>) -> Result<Texture, StateError> {
     match key {
         StateKey::Generated { layer, state } => {

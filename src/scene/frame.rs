@@ -31,6 +31,7 @@ pub struct Frame<'a> {
 
 impl Frame<'_> {
     /// Width and height of the picture that is computed; at least one pixel each.
+    #[allow(clippy::cast_possible_truncation, reason = "a size in pixels; a cast from a float saturates")]
     pub fn render_size(&self) -> [u32; 2] {
         let scale = f64::from(self.quality.resolution_scale);
         self.size.map(|side| ((f64::from(side) * scale).round() as u32).max(1))

@@ -72,13 +72,13 @@ params! {
         /// How far tops spread out sideways, as an anvil.
         anvil: f32 = 0.0, 0.0..=1.0, None;
         /// Edge length of the tile of the large 3D noise.
-        shape_size_m: f32 = 2800.0, 200.0..=50_000.0, Metres, logarithmic;
+        shape_size_m: f32 = 2400.0, 200.0..=50_000.0, Metres, logarithmic;
         /// Strength of the large 3D noise that makes billows.
         shape_strength: f32 = 1.0, 0.0..=2.0, None;
         /// Edge length of the tile of the small 3D noise.
-        detail_size_m: f32 = 600.0, 20.0..=10_000.0, Metres, logarithmic;
+        detail_size_m: f32 = 320.0, 20.0..=10_000.0, Metres, logarithmic;
         /// Strength of the small noise that erodes the surface. 0 removes its texture reads.
-        detail_strength: f32 = 0.9, 0.0..=2.0, None;
+        detail_strength: f32 = 1.0, 0.0..=2.0, None;
         /// How wispy (rather than billowy) the erosion is over the whole height.
         wispiness: f32 = 0.0, 0.0..=1.0, None;
         /// How far curl noise drags the detail. 0 removes its texture reads.

@@ -21,7 +21,7 @@ params! {
         /// Height of the sun above the horizon.
         elevation_deg: f32 = 42.0, -90.0..=90.0, Degrees;
         /// Direction of the sun, clockwise from north.
-        azimuth_deg: f32 = 310.0, 0.0..=360.0, Degrees;
+        azimuth_deg: f32 = 235.0, 0.0..=360.0, Degrees;
         /// Local hour of the day.
         hour_h: f32 = 14.0, 0.0..=24.0, Hours;
         /// Day of the year.
@@ -69,7 +69,7 @@ params! {
         /// Extinction of each octave of scattering relative to the one before (Wrenninge 2013).
         octave_extinction: f32 = 0.35, 0.0..=1.0, None;
         /// Energy of each octave relative to the one before.
-        octave_energy: f32 = 0.62, 0.0..=1.0, None;
+        octave_energy: f32 = 0.64, 0.0..=1.0, None;
         /// Anisotropy of each octave relative to the one before.
         octave_anisotropy: f32 = 0.55, 0.0..=1.0, None;
         /// Strength of the light from the whole sky.
@@ -89,7 +89,7 @@ params! {
     /// The clear air.
     pub struct Air ("Air") {
         /// Amount of haze (Mie scatterers) relative to clear air.
-        haze: f32 = 1.0, 0.0..=20.0, None;
+        haze: f32 = 4.0, 0.0..=20.0, None;
         /// Amount of air molecules (Rayleigh scatterers) relative to the Earth's.
         molecules: f32 = 1.0, 0.0..=10.0, None;
         /// Amount of ozone relative to the Earth's.

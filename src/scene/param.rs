@@ -30,6 +30,8 @@ pub enum Unit {
     Nits,
     /// Image elements.
     Pixels,
+    /// Colour temperature.
+    Kelvin,
 }
 
 impl Unit {
@@ -47,6 +49,7 @@ impl Unit {
             Self::Kilolux => " klx",
             Self::Nits => " cd/m²",
             Self::Pixels => " px",
+            Self::Kelvin => " K",
         }
     }
 }
@@ -77,7 +80,7 @@ impl<T> Info<T> {
 
 /// A field name as people read it: `base_m` becomes `Base`.
 pub fn label(name: &str) -> String {
-    const UNITS: [&str; 8] = ["_m", "_per_m", "_deg", "_mps", "_secs", "_h", "_ev", "_klx"];
+    const UNITS: [&str; 10] = ["_m", "_per_m", "_deg", "_mps", "_secs", "_h", "_ev", "_klx", "_px", "_kelvin"];
     let mut words = name;
     for unit in UNITS {
         words = words.strip_suffix(unit).unwrap_or(words);

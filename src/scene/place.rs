@@ -39,19 +39,19 @@ params! {
         /// Whether ground is drawn below the horizon.
         visible: bool = true;
         /// Colour of lit ground (albedo) in the plains.
-        albedo: Colour = Colour(0.065, 0.075, 0.04);
+        albedo: Colour = Colour(0.062, 0.075, 0.036);
         /// Colour of rock and heights.
         rock: Colour = Colour(0.12, 0.11, 0.10);
         /// Height of the mountains. 0 leaves a plain.
         mountains_m: f32 = 0.0, 0.0..=5000.0, Metres;
         /// Distance from one range to the next.
-        mountain_size_m: f32 = 14_000.0, 1000.0..=100_000.0, Metres, logarithmic;
+        mountain_size_m: f32 = 6000.0, 1000.0..=100_000.0, Metres, logarithmic;
         /// Height of the hills between them.
         hills_m: f32 = 60.0, 0.0..=1000.0, Metres;
         /// Seed of the terrain.
         seed: u32 = 3, 0..=999_999, None;
         /// Strength of the shadows that clouds cast on the ground. 0 removes the pass.
-        cloud_shadows: f32 = 1.0, 0.0..=1.0, None;
+        cloud_shadows: f32 = 0.85, 0.0..=1.0, None;
     }
 }
 
@@ -90,7 +90,7 @@ params! {
 choices! {
     /// How light becomes display colour.
     pub enum ToneMap {
-        /// AgX, as Blender's default: soft, hue-keeping.
+        /// `AgX`, as Blender's default: soft, hue-keeping.
         Agx ("AgX"),
         /// Khronos PBR Neutral: colours as given, highlights compressed.
         Neutral ("Khronos Neutral"),
@@ -103,7 +103,9 @@ params! {
     /// How light becomes the picture on the screen. Never part of an EXR.
     pub struct Display ("Display") {
         /// Exposure value at ISO 100 that is rendered as middle tones; 15 suits a sunny day, −3 a moonlit night.
-        exposure_ev: f32 = 14.0, -12.0..=24.0, Stops;
+        exposure_ev: f32 = 13.5, -12.0..=24.0, Stops;
+        /// Colour temperature of the light that is shown as white.
+        white_kelvin: f32 = 5500.0, 2000.0..=20_000.0, Kelvin, logarithmic;
         /// How light becomes display colour.
         tone_map: ToneMap = ToneMap::Agx;
         /// Saturation of the tone-mapped picture.

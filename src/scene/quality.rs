@@ -51,6 +51,8 @@ params! {
         step_m: f32 = 34.0, 1.0..=1000.0, Metres, logarithmic;
         /// Growth of the step with distance: metres more per metre.
         step_growth: f32 = 0.006, 0.0..=0.1, None;
+        /// Optical depth of a step inside dense cloud; the step is never longer than its length by distance.
+        step_depth: f32 = 0.8, 0.02..=10_000.0, None, logarithmic;
         /// Length of a step in clear air relative to one in cloud.
         empty_stride: f32 = 3.0, 1.0..=8.0, None;
         /// Greatest distance at which clouds are drawn.
@@ -68,7 +70,7 @@ params! {
         /// Transmittance below which a ray ends.
         early_exit: f32 = 0.01, 0.0..=0.2, None;
         /// Distance at which the small noise has faded to its mean.
-        detail_distance_m: f32 = 60_000.0, 100.0..=500_000.0, Metres, logarithmic;
+        detail_distance_m: f32 = 25_000.0, 100.0..=500_000.0, Metres, logarithmic;
         /// Coarser (above 0) or finer mip levels of the noises with distance.
         noise_level_bias: f32 = 0.0, -4.0..=4.0, None;
         /// Share of pixels computed anew in a frame.
@@ -92,6 +94,7 @@ impl Quality {
                 view_steps: 96,
                 step_m: 60.0,
                 step_growth: 0.012,
+                step_depth: 1.2,
                 light_steps: 4,
                 light_detail_steps: 0,
                 octaves: 4,
@@ -104,12 +107,14 @@ impl Quality {
                 view_steps: 400,
                 step_m: 18.0,
                 step_growth: 0.0025,
+                step_depth: 0.5,
                 empty_stride: 2.0,
                 light_steps: 9,
                 light_growth: 1.6,
                 light_detail_steps: 3,
                 octaves: 6,
                 early_exit: 0.004,
+                detail_distance_m: 40_000.0,
                 update: UpdateFraction::Full,
                 shadow_map_px: 384,
                 shaft_samples: 48,
@@ -119,6 +124,7 @@ impl Quality {
                 view_steps: 1000,
                 step_m: 10.0,
                 step_growth: 0.0014,
+                step_depth: 0.25,
                 empty_stride: 1.5,
                 light_steps: 12,
                 light_growth: 1.45,
@@ -135,6 +141,7 @@ impl Quality {
     }
 
     /// The lengths of all light steps add up to [`Self::light_reach_m`]; this is the first of them.
+    #[allow(clippy::cast_possible_truncation, reason = "parameters are f32; only the sum needs more")]
     pub fn first_light_step_m(&self) -> f32 {
         let steps = f64::from(self.light_steps);
         let growth = f64::from(self.light_growth);

@@ -19,6 +19,7 @@ pub(super) fn elevation_azimuth_deg(sun: &Sun) -> (f32, f32) {
     }
 }
 
+#[allow(clippy::cast_possible_truncation, reason = "angles of parameters are f32")]
 fn computed(sun: &Sun) -> Option<(f32, f32)> {
     let new_year = JulianDate::from_utc_simple(YEAR, 1, 1, 0, 0, 0.0).ok()?;
     let days = f64::from(sun.day) - 1.0 + (f64::from(sun.hour_h) - f64::from(sun.utc_offset_h)) / 24.0;

@@ -59,7 +59,7 @@ params! {
     /// Where clouds are: a map over the ground and how much of it they cover.
     pub struct Weather ("Weather") {
         /// Share of the sky that clouds cover.
-        coverage: f32 = 0.45, 0.0..=1.0, None;
+        coverage: f32 = 0.36, 0.0..=1.0, None;
         /// Whether another coverage is on its way from the upwind horizon.
         coverage_changes: bool = false;
         /// The coverage that arrives from the horizon.

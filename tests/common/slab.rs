@@ -92,6 +92,8 @@ impl March {
             octave_anisotropy: 1.0,
             view_steps: 20_000,
             step_m: 10.0,
+            // Equal steps: none is cut short by its optical depth.
+            step_depth: 1e30,
             empty_stride: 1.0,
             light_steps: 8,
             first_light_step_m: 1e6 / 8.0,

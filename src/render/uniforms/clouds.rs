@@ -33,9 +33,7 @@ fn map_from_world(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
     match weather.edge {
         MapEdge::Repeat => Vec4::new(wrapped(tiles.x), wrapped(tiles.y), per_metre, 0.0),
         // A map that ends lies with its middle on the world's origin.
-        MapEdge::Clamp | MapEdge::Clear => {
-            Vec4::new((tiles.x + 0.5) as f32, (tiles.y + 0.5) as f32, per_metre, 0.0)
-        }
+        MapEdge::Clamp | MapEdge::Clear => Vec4::new((tiles.x + 0.5) as f32, (tiles.y + 0.5) as f32, per_metre, 0.0),
     }
 }
 
@@ -74,7 +72,7 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
         lean: Vec4::new(downwind.x as f32, downwind.y as f32, 0.0, 0.0),
         base_m: layer.base_m,
         per_thickness: 1.0 / thickness_m,
-        base_ramp: (90.0 / thickness_m).clamp(0.02, 0.25),
+        base_ramp: (200.0 / thickness_m).clamp(0.02, 0.3),
         top_variation: layer.top_variation,
         body_scale,
         body_bias,
@@ -173,6 +171,10 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         detail_distance_m: quality.detail_distance_m,
         noise_level_bias: quality.noise_level_bias,
         max_distance_m: quality.max_distance_m,
+        step_depth: quality.step_depth,
+        pad0: 0.0,
+        pad1: 0.0,
+        pad2: 0.0,
         layers,
     }
 }

@@ -109,13 +109,17 @@ gpu_struct! {
 
     /// From light to display.
     pub struct DisplayUniforms {
-        /// Factor from working units to the curve's input.
-        pub exposure: f32,
+        /// Factor from working units to the curve's input, white balance included.
+        pub exposure: Vec3,
         /// Contrast.
         pub contrast: f32,
         /// Saturation.
         pub saturation: f32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad0: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: f32,
     }
 }

@@ -194,6 +194,14 @@ gpu_struct! {
         pub noise_level_bias: f32,
         /// Distance at which clouds end.
         pub max_distance_m: f32,
+        /// Optical depth of a step inside cloud.
+        pub step_depth: f32,
+        /// Keeps the layers apart.
+        pub pad0: f32,
+        /// Keeps the layers apart.
+        pub pad1: f32,
+        /// Keeps the layers apart.
+        pub pad2: f32,
         /// The layers; as many as the program was compiled for count.
         pub layers: [LayerUniforms; 4],
     }

@@ -1,0 +1,165 @@
+//! What a user can ask for. The panels return actions; only [`super::Document::apply`] changes the document.
+
+use std::path::PathBuf;
+
+use crate::scene::{Camera, Quality, QualityLevel, Scene};
+
+/// One wish of the user.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// A parameter of the scene was edited; the key is its path, such as `layers.0.base_m`.
+    EditScene {
+        /// The parameter.
+        key: String,
+        /// The scene with the edit.
+        scene: Box<Scene>,
+    },
+    /// A parameter of the quality was edited.
+    EditQuality {
+        /// The parameter.
+        key: String,
+        /// The quality with the edit.
+        quality: Box<Quality>,
+    },
+    /// Take the settings of a named level.
+    SetQualityLevel(QualityLevel),
+    /// The camera moved.
+    MoveCamera(Camera),
+    /// The camera returns to where the preset put it.
+    ResetCamera,
+    /// The sun was dragged by so many degrees of elevation and azimuth.
+    TurnSun {
+        /// Upwards, in degrees.
+        elevation_deg: f32,
+        /// Clockwise from above, in degrees.
+        azimuth_deg: f32,
+    },
+    /// Exposure in stops, relative to now; positive is darker, as on a camera.
+    ChangeExposure(f32),
+    /// The preset's name was edited.
+    Rename(String),
+    /// Time runs or stands.
+    Play(bool),
+    /// Back to the beginning of time.
+    ResetTime,
+    /// Seconds of the scene per second of the clock.
+    SetTimeFactor(f64),
+    /// Anything that concerns files, windows and threads rather than the document.
+    Ask(Request),
+}
+
+/// A wish that the document alone cannot fulfil.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// Start from the default scene.
+    New,
+    /// Open a preset, an EXR or PNG that holds one, or a built-in preset by its short name.
+    Open(PathBuf),
+    /// Save where it came from.
+    Save,
+    /// Save under a path.
+    SaveAs(PathBuf),
+    /// The answer to the question about unsaved changes.
+    Answer(Answer),
+    /// Show the system's file dialog.
+    Browse(Browse),
+    /// Write what the window shows as PNG.
+    Screenshot,
+    /// Render a still and write it.
+    Export(Export),
+    /// Take or refuse the document that a crash left behind.
+    Recover(bool),
+    /// Full screen on or off.
+    ToggleFullScreen,
+    /// Close the window.
+    Quit,
+}
+
+/// What to do with unsaved changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Save them, then go on.
+    Save,
+    /// Lose them and go on.
+    Discard,
+    /// Stay.
+    Cancel,
+}
+
+/// What a file dialog is for.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Browse {
+    /// A preset or an EXR to open.
+    Open,
+    /// Where to save the preset.
+    SaveAs,
+    /// Where to write a still.
+    Export,
+    /// The file of a parameter, by its key.
+    Parameter(String),
+}
+
+/// What a still shows and how it is stored.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Still {
+    /// The whole picture as linear light, EXR.
+    #[default]
+    Exr,
+    /// The clouds alone with their opacity, EXR.
+    CloudsExr,
+    /// The picture as on the screen, PNG.
+    Png,
+}
+
+/// A still to be rendered.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Export {
+    /// What it shows.
+    pub still: Still,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The quality; `None` for that of the viewport.
+    pub level: Option<QualityLevel>,
+    /// Where it goes.
+    pub path: PathBuf,
+}
+
+impl Action {
+    /// What the action is called in histories and messages.
+    pub fn name(&self) -> String {
+        match self {
+            Self::EditScene { key, .. } => format!("edit {key}"),
+            Self::EditQuality { key, .. } => format!("edit quality.{key}"),
+            Self::SetQualityLevel(_) => "set the quality level".to_owned(),
+            Self::MoveCamera(_) => "move the camera".to_owned(),
+            Self::ResetCamera => "reset the camera".to_owned(),
+            Self::TurnSun { .. } => "move the sun".to_owned(),
+            Self::ChangeExposure(_) => "change the exposure".to_owned(),
+            Self::Rename(_) => "rename".to_owned(),
+            Self::Play(true) => "play".to_owned(),
+            Self::Play(false) => "pause".to_owned(),
+            Self::ResetTime => "reset the time".to_owned(),
+            Self::SetTimeFactor(_) => "set the speed of time".to_owned(),
+            Self::Ask(request) => request.name().to_owned(),
+        }
+    }
+}
+
+impl Request {
+    /// What the request is called.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::New => "new",
+            Self::Open(_) => "open",
+            Self::Save => "save",
+            Self::SaveAs(_) => "save as",
+            Self::Answer(_) => "answer",
+            Self::Browse(_) => "browse",
+            Self::Screenshot => "screenshot",
+            Self::Export(_) => "export",
+            Self::Recover(_) => "recover",
+            Self::ToggleFullScreen => "full screen",
+            Self::Quit => "quit",
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Keeps the picture going: begins frames, sends their work in slices, and knows when there is nothing left to do.
+
+use std::time::{Duration, Instant};
+
+use super::document::Document;
+use super::statistics::Statistics;
+use crate::gpu::Gpu;
+use crate::plan::FramePlan;
+use crate::render::{Progress, RenderError, Renderer};
+use crate::scene::{Output, Quality, Scene, UpdateFraction};
+use crate::ui::Readout;
+
+/// Work sent to the device at a time. The panels' frame comes after at most one of these.
+const SLICE: Duration = Duration::from_millis(30);
+/// A picture whose inputs have changed may go on for this long: a slow one is begun anew instead.
+const PATIENCE: Duration = Duration::from_millis(400);
+/// How often a frame that waits for its shaders is begun anew.
+const COMPILE_POLL: Duration = Duration::from_millis(60);
+/// Inputs that have kept still for this long count as settled; during a drag pictures are finished, late as they are.
+const SETTLED: Duration = Duration::from_millis(150);
+
+/// Everything a picture depends on.
+#[derive(Clone, Debug, PartialEq)]
+struct Inputs {
+    scene: Scene,
+    quality: Quality,
+    size: [u32; 2],
+    time_secs: f64,
+}
+
+/// What a step of the viewport led to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    /// Nothing is left to do.
+    Idle,
+    /// Work is under way or waits for the next step.
+    Busy,
+    /// A new picture is there.
+    Finished,
+}
+
+/// The renderer, and what it is busy with.
+#[derive(Debug)]
+pub(super) struct Viewport {
+    renderer: Renderer,
+    /// What the frame under way, or else the last, was begun with.
+    begun: Option<Inputs>,
+    /// When the frame under way was begun.
+    since: Option<Instant>,
+    /// The inputs of the last step, and since when they have been the same.
+    seen: Option<(Inputs, Instant)>,
+    /// Pictures until the update cycle has visited every pixel since the last change.
+    left: u32,
+    /// Inputs that the renderer refused; not tried again until they change.
+    refused: Option<Inputs>,
+    compiling: bool,
+    pub(super) statistics: Statistics,
+}
+
+impl Viewport {
+    /// A viewport without a picture.
+    pub(super) fn new(gpu: &Gpu) -> Result<Self, RenderError> {
+        Ok(Self {
+            renderer: Renderer::new(gpu)?,
+            begun: None,
+            since: None,
+            seen: None,
+            left: 0,
+            refused: None,
+            compiling: false,
+            statistics: Statistics::default(),
+        })
+    }
+
+    /// The renderer.
+    pub(super) fn renderer(&self) -> &Renderer {
+        &self.renderer
+    }
+
+    /// Begins a frame if one is due, and sends the next slice of work.
+    pub(super) fn step(&mut self, document: &Document, size: [u32; 2]) -> Result<Step, RenderError> {
+        let inputs = Inputs {
+            scene: document.preset().scene.clone(),
+            quality: document.quality().clone(),
+            size,
+            time_secs: document.time_secs(),
+        };
+        if self.refused.as_ref() == Some(&inputs) {
+            return Ok(Step::Idle);
+        }
+        let outcome = self.step_with(&inputs, document);
+        if outcome.is_err() {
+            self.refused = Some(inputs);
+            self.since = None;
+            self.left = 0;
+        }
+        outcome
+    }
+
+    fn step_with(&mut self, inputs: &Inputs, document: &Document) -> Result<Step, RenderError> {
+        let kept_still = match &self.seen {
+            Some((seen, since)) if seen == inputs => since.elapsed(),
+            _ => {
+                self.seen = Some((inputs.clone(), Instant::now()));
+                Duration::ZERO
+            }
+        };
+        let changed = self.begun.as_ref() != Some(inputs);
+        if changed {
+            self.left = pictures_per_cycle(inputs.quality.update);
+        }
+        let due = match self.since {
+            None => self.left > 0,
+            Some(since) => changed && since.elapsed() > PATIENCE && kept_still > SETTLED,
+        };
+        if due {
+            self.renderer.begin(&document.frame(inputs.size, Output::Display))?;
+            self.begun = Some(inputs.clone());
+            self.since = Some(Instant::now());
+        }
+        if self.since.is_none() {
+            return Ok(Step::Idle);
+        }
+        match self.renderer.advance(SLICE)? {
+            Progress::Idle => {
+                self.since = None;
+                self.left = 0;
+                Ok(Step::Idle)
+            }
+            Progress::Compiling => {
+                self.compiling = true;
+                // Whoever waits for a shader begins again: it may be there, and the inputs may be others.
+                if self.since.is_some_and(|since| since.elapsed() > COMPILE_POLL) {
+                    self.since = None;
+                    self.left = self.left.max(1);
+                }
+                Ok(Step::Busy)
+            }
+            Progress::Working => {
+                self.compiling = false;
+                Ok(Step::Busy)
+            }
+            Progress::Finished(report) => {
+                self.compiling = false;
+                self.since = None;
+                // A picture drawn as the one before was planned, while its own shaders compile, does not count.
+                let planned = report.plan == FramePlan::new(&document.frame(inputs.size, Output::Display));
+                self.left = if planned { self.left.saturating_sub(1) } else { self.left.max(1) };
+                self.refused = None;
+                self.statistics.add(*report);
+                Ok(Step::Finished)
+            }
+        }
+    }
+
+    /// Whether shaders are being compiled.
+    pub(super) fn is_compiling(&self) -> bool {
+        self.compiling
+    }
+
+    /// What the overlay shows.
+    pub(super) fn readout(&self) -> Readout {
+        Readout {
+            adapter: self.renderer.gpu().description(),
+            size: self.renderer.display().map(crate::gpu::Texture::size).unwrap_or_default(),
+            memory_bytes: self.renderer.memory_bytes(),
+            ..self.statistics.readout()
+        }
+    }
+}
+
+/// Pictures after which every pixel has been computed at least once.
+fn pictures_per_cycle(update: UpdateFraction) -> u32 {
+    match update {
+        UpdateFraction::Full => 1,
+        UpdateFraction::Half => 2,
+        UpdateFraction::Quarter => 4,
+        UpdateFraction::Sixteenth => 16,
+    }
+}

@@ -1,0 +1,171 @@
+//! What would keep the window waiting: file dialogs, stills, and writing pictures. Each runs on a thread of its own
+//! and reports back through the event loop.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use winit::event_loop::EventLoopProxy;
+
+use super::action::{Browse, Export, Still};
+use crate::export::exr::ExrOptions;
+use crate::files::{About, save_exr, save_png};
+use crate::gpu::Gpu;
+use crate::render::Renderer;
+use crate::scene::{Frame, Output, Preset, Quality};
+
+/// What reaches the event loop from outside the window.
+#[derive(Debug)]
+pub(super) enum Event {
+    /// A screen reader wants something.
+    Accessibility(egui_winit::accesskit_winit::Event),
+    /// A thread has finished.
+    Worker(Message),
+}
+
+impl From<egui_winit::accesskit_winit::Event> for Event {
+    fn from(event: egui_winit::accesskit_winit::Event) -> Self {
+        Self::Accessibility(event)
+    }
+}
+
+/// What a thread found or did.
+#[derive(Debug)]
+pub(super) enum Message {
+    /// A path was chosen in the system's file dialog.
+    Picked(Browse, PathBuf),
+    /// The dialog was closed without a choice.
+    NotPicked,
+    /// There seems to be no file dialog on this system.
+    NoFileDialog,
+    /// A picture was written.
+    Written(PathBuf),
+    /// A picture could not be rendered or written.
+    Failed(String),
+}
+
+/// A dialog that returns nothing faster than this was never on the screen.
+const FASTEST_CANCEL: Duration = Duration::from_millis(400);
+
+/// Starts threads that report to one event loop.
+#[derive(Clone, Debug)]
+pub(super) struct Worker {
+    proxy: EventLoopProxy<Event>,
+}
+
+/// Everything a still or a screenshot needs, owned, so that the document can change meanwhile.
+#[derive(Clone, Debug)]
+pub(super) struct StillJob {
+    /// The device.
+    pub(super) gpu: Gpu,
+    /// The sky.
+    pub(super) preset: Preset,
+    /// How it is computed.
+    pub(super) quality: Quality,
+    /// When.
+    pub(super) time_secs: f64,
+    /// What is written and where.
+    pub(super) export: Export,
+}
+
+impl StillJob {
+    fn about(&self) -> About<'_> {
+        About { preset: &self.preset, quality: &self.quality, time_secs: self.time_secs }
+    }
+}
+
+impl Worker {
+    /// A worker that reports to this loop.
+    pub(super) fn new(proxy: EventLoopProxy<Event>) -> Self {
+        Self { proxy }
+    }
+
+    fn spawn(&self, name: &str, work: impl FnOnce() -> Message + Send + 'static) {
+        let proxy = self.proxy.clone();
+        let report = move |message| {
+            // The loop is gone only when the window is closed; then nobody waits for the message.
+            let _ = proxy.send_event(Event::Worker(message));
+        };
+        let failed = report.clone();
+        let thread = std::thread::Builder::new().name(name.to_owned());
+        if let Err(error) = thread.spawn(move || report(work())) {
+            failed(Message::Failed(format!("no thread for {name}: {error}")));
+        }
+    }
+
+    /// Shows the system's file dialog.
+    pub(super) fn browse(&self, purpose: Browse, start: &Path) {
+        let start = start.to_owned();
+        self.spawn("file dialog", move || {
+            let begun = Instant::now();
+            match pollster::block_on(dialog(&purpose, &start)) {
+                Some(file) => Message::Picked(purpose, file.path().to_owned()),
+                None if begun.elapsed() < FASTEST_CANCEL => Message::NoFileDialog,
+                None => Message::NotPicked,
+            }
+        });
+    }
+
+    /// Writes the window's picture as PNG into the folder that the job names, under the first free numbered name.
+    pub(super) fn screenshot(&self, job: StillJob, (size, pixels): ([u32; 2], Vec<u8>)) {
+        self.spawn("screenshot", move || {
+            let folder = &job.export.path;
+            // A folder that cannot be made is reported by the write, with its path.
+            let _ = std::fs::create_dir_all(folder);
+            let path = free_name(folder);
+            match save_png(&path, size, &pixels, &job.about()) {
+                Ok(()) => Message::Written(path),
+                Err(error) => Message::Failed(error.to_string()),
+            }
+        });
+    }
+
+    /// Renders a still and writes it.
+    pub(super) fn still(&self, job: StillJob) {
+        self.spawn("still", move || match still(&job) {
+            Ok(()) => Message::Written(job.export.path),
+            Err(error) => Message::Failed(format!("{error:#}")),
+        });
+    }
+}
+
+async fn dialog(purpose: &Browse, start: &Path) -> Option<rfd::FileHandle> {
+    let dialog = rfd::AsyncFileDialog::new().set_directory(start);
+    let skies = ["ron", "exr", "png"];
+    match purpose {
+        Browse::Open => dialog.add_filter("Skies", &skies).pick_file().await,
+        Browse::SaveAs => dialog.add_filter("Preset", &["ron"]).set_file_name("sky.ron").save_file().await,
+        Browse::Export => dialog.add_filter("Pictures", &["exr", "png"]).set_file_name("sky.exr").save_file().await,
+        Browse::Parameter(_) => dialog.add_filter("Images", &["png", "exr"]).pick_file().await,
+    }
+}
+
+fn free_name(folder: &Path) -> PathBuf {
+    let name = |number: u32| folder.join(format!("nephoscope-{number:04}.png"));
+    (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(10_000))
+}
+
+/// A renderer of its own on the same device, so that the window's keeps its history and its picture.
+fn still(job: &StillJob) -> anyhow::Result<()> {
+    let mut renderer = Renderer::new(&job.gpu)?;
+    let output = match job.export.still {
+        Still::Exr => Output::Linear,
+        Still::CloudsExr => Output::CloudsAlone,
+        Still::Png => Output::Display,
+    };
+    let frame = Frame {
+        scene: &job.preset.scene,
+        quality: &job.quality,
+        size: job.export.size,
+        time_secs: job.time_secs,
+        output,
+    };
+    renderer.render(&frame)?;
+    let path = &job.export.path;
+    if job.export.still == Still::Png {
+        let (size, pixels) = renderer.display_rgba8()?;
+        save_png(path, size, &pixels, &job.about())?;
+    } else {
+        save_exr(path, &renderer.linear()?, &job.about(), ExrOptions::default())?;
+    }
+    Ok(())
+}

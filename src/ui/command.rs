@@ -1,0 +1,178 @@
+//! Commands with keys: one table for the keyboard, the menus and the sheet of shortcuts.
+
+use egui::{Key, KeyboardShortcut, Modifiers, Ui};
+
+use super::{Dialog, ExportForm, State};
+use crate::app::action::{Action, Request};
+use crate::app::document::Document;
+
+/// Something that a key or a menu entry does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Command {
+    /// Start anew.
+    New,
+    /// Ask for a file to open.
+    Open,
+    /// Save.
+    Save,
+    /// Ask for a path and save.
+    SaveAs,
+    /// Write the window's picture.
+    Screenshot,
+    /// Ask for a still and render it.
+    Export,
+    /// Close the program.
+    Quit,
+    /// Play or pause.
+    PlayPause,
+    /// Time back to 0.
+    ResetTime,
+    /// Camera back to the preset's.
+    ResetCamera,
+    /// Half a stop brighter.
+    Brighter,
+    /// Half a stop darker.
+    Darker,
+    /// Preset list on or off.
+    Presets,
+    /// Parameter panel on or off.
+    Panel,
+    /// Timing overlay on or off.
+    Overlay,
+    /// Everything but the picture off or on.
+    HideAll,
+    /// Full screen on or off.
+    FullScreen,
+    /// Light or dark.
+    Theme,
+    /// Sheet of shortcuts on or off.
+    Shortcuts,
+}
+
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// Command, key, and name for people.
+const TABLE: [(Command, Modifiers, Key, &str); 19] = [
+    (Command::New, Modifiers::COMMAND, Key::N, "New"),
+    (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
+    // The longer combination first: a shortcut also fires when more modifiers are held.
+    (Command::SaveAs, CTRL_SHIFT, Key::S, "Save as…"),
+    (Command::Save, Modifiers::COMMAND, Key::S, "Save"),
+    (Command::Screenshot, Modifiers::NONE, Key::F12, "Screenshot"),
+    (Command::Export, Modifiers::COMMAND, Key::E, "Export still…"),
+    (Command::Quit, Modifiers::COMMAND, Key::Q, "Quit"),
+    (Command::PlayPause, Modifiers::NONE, Key::Space, "Play or pause"),
+    (Command::ResetTime, CTRL_SHIFT, Key::Home, "Time back to 0"),
+    (Command::ResetCamera, Modifiers::NONE, Key::Home, "Camera back to the preset’s"),
+    (Command::Brighter, Modifiers::NONE, Key::OpenBracket, "Half a stop brighter"),
+    (Command::Darker, Modifiers::NONE, Key::CloseBracket, "Half a stop darker"),
+    (Command::Presets, Modifiers::NONE, Key::F2, "Preset list"),
+    (Command::Panel, Modifiers::NONE, Key::F3, "Parameter panel"),
+    (Command::Overlay, Modifiers::NONE, Key::F10, "Timing overlay"),
+    (Command::HideAll, Modifiers::NONE, Key::Tab, "Hide the panels"),
+    (Command::FullScreen, Modifiers::NONE, Key::F11, "Full screen"),
+    (Command::Theme, CTRL_SHIFT, Key::L, "Light or dark"),
+    (Command::Shortcuts, Modifiers::NONE, Key::F1, "Shortcuts"),
+];
+
+/// What mice and held keys do, for the sheet.
+pub(super) const GESTURES: [(&str, &str); 9] = [
+    ("Right mouse held", "Look around"),
+    ("… with W A S D", "Fly forwards, left, back, right"),
+    ("… with Q E", "Fly down, up"),
+    ("… with wheel", "Speed of flight"),
+    ("… with Shift, Ctrl", "Five times faster, slower"),
+    ("Middle mouse, Shift+left", "Orbit the point ahead"),
+    ("L and left mouse", "Move the sun"),
+    ("Ctrl+F", "Filter parameters"),
+    ("Ctrl and + − 0", "Size of the panels"),
+];
+
+impl Command {
+    /// All commands in the order of the sheet.
+    pub fn all() -> impl Iterator<Item = Self> {
+        TABLE.iter().map(|(command, ..)| *command)
+    }
+
+    /// Name for people.
+    pub fn title(self) -> &'static str {
+        TABLE.iter().find(|(command, ..)| *command == self).map_or("", |(.., title)| title)
+    }
+
+    /// The key.
+    pub fn shortcut(self) -> KeyboardShortcut {
+        let row = TABLE.iter().find(|(command, ..)| *command == self);
+        row.map_or(KeyboardShortcut::new(Modifiers::NONE, Key::F35), |(_, modifiers, key, _)| {
+            KeyboardShortcut::new(*modifiers, *key)
+        })
+    }
+
+    /// The key as people read it.
+    pub(super) fn keys(self, context: &egui::Context) -> String {
+        let keys = context.format_shortcut(&self.shortcut());
+        keys.replace("OpenBracket", "[").replace("CloseBracket", "]")
+    }
+
+    /// Does it: changes the state, or adds an action.
+    pub fn run(self, ui: &Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
+        let mut ask = |request| actions.push(Action::Ask(request));
+        match self {
+            Self::New => ask(Request::New),
+            Self::Open => state.dialog = Some(Dialog::Open { path: String::new() }),
+            Self::Save if document.path().is_some() => ask(Request::Save),
+            Self::Save | Self::SaveAs => state.dialog = Some(Dialog::save_as(document, &state.library)),
+            Self::Screenshot => ask(Request::Screenshot),
+            Self::Export => state.dialog = Some(Dialog::Export(ExportForm::for_document(document))),
+            Self::Quit => ask(Request::Quit),
+            Self::PlayPause => actions.push(Action::Play(!document.is_playing())),
+            Self::ResetTime => actions.push(Action::ResetTime),
+            Self::ResetCamera => actions.push(Action::ResetCamera),
+            Self::Brighter => actions.push(Action::ChangeExposure(-0.5)),
+            Self::Darker => actions.push(Action::ChangeExposure(0.5)),
+            Self::Presets => state.show_presets = Some(!state.presets_visible(ui.ctx().content_rect().width())),
+            Self::Panel => state.show_panel = !state.show_panel,
+            Self::Overlay => state.show_overlay = !state.show_overlay,
+            Self::HideAll => {
+                state.hide_all = !state.hide_all;
+                // egui has taken the same key for the next widget.
+                ui.ctx().memory_mut(|memory| {
+                    memory.move_focus(egui::FocusDirection::None);
+                    if let Some(focused) = memory.focused() {
+                        memory.surrender_focus(focused);
+                    }
+                });
+            }
+            Self::FullScreen => ask(Request::ToggleFullScreen),
+            Self::Theme => ui.ctx().set_theme(super::other(ui.ctx().theme())),
+            Self::Shortcuts => {
+                let open = state.dialog == Some(Dialog::Shortcuts);
+                state.dialog = if open { None } else { Some(Dialog::Shortcuts) };
+            }
+        }
+    }
+
+    /// Keys that a focused widget needs for itself.
+    fn yields_to_focus(self) -> bool {
+        matches!(
+            self,
+            Self::PlayPause | Self::ResetCamera | Self::ResetTime | Self::Brighter | Self::Darker | Self::HideAll
+        )
+    }
+}
+
+/// Runs the commands whose keys were pressed since the last frame.
+pub(super) fn take(ui: &mut Ui, state: &mut State, document: &Document) -> Vec<Action> {
+    let mut actions = Vec::new();
+    let asking = state.dialog.is_some() && state.dialog != Some(Dialog::Shortcuts);
+    let typing = ui.ctx().egui_wants_keyboard_input();
+    for command in Command::all() {
+        let free = command == Command::HideAll && state.hide_all;
+        if asking || typing && command.yields_to_focus() && !free {
+            continue;
+        }
+        if ui.input_mut(|input| input.consume_shortcut(&command.shortcut())) {
+            command.run(ui, state, document, &mut actions);
+        }
+    }
+    actions
+}

@@ -1,0 +1,147 @@
+//! The editor's panels. They see the document, never change it, and return what the user wants as [`Action`]s.
+
+mod command;
+mod dialogs;
+mod overlay;
+mod panel;
+mod presets;
+mod probe;
+mod row;
+mod toasts;
+mod top_bar;
+mod viewport;
+
+pub use command::Command;
+pub use dialogs::{Dialog, ExportForm};
+pub use overlay::{PassLine, Readout};
+pub use panel::PanelState;
+pub use presets::{Entry, Library};
+pub use probe::set_file_in;
+pub use toasts::{Level, Toasts};
+pub use viewport::{Gesture, Picture, ViewportState};
+
+use egui::{Margin, Theme, Ui};
+
+use crate::app::action::Action;
+use crate::app::document::Document;
+
+/// Below this width of the window the preset list is not opened by itself, in points.
+const WIDE_ENOUGH_FOR_PRESETS: f32 = 1100.0;
+
+/// What the panels remember between frames, and what the program tells them beside the document.
+#[derive(Debug)]
+pub struct State {
+    /// The parameter panel.
+    pub panel: PanelState,
+    /// Whether the parameter panel is there.
+    pub show_panel: bool,
+    /// Whether the preset list is there; `None` until the user says, then as the window has room.
+    pub show_presets: Option<bool>,
+    /// Whether the timing overlay is there.
+    pub show_overlay: bool,
+    /// Whether everything but the picture is hidden.
+    pub hide_all: bool,
+    /// The question on the screen, if any.
+    pub dialog: Option<Dialog>,
+    /// Short messages.
+    pub toasts: Toasts,
+    /// Presets to choose from.
+    pub library: Library,
+    /// The picture and what is done to it.
+    pub viewport: ViewportState,
+    /// What a thread is busy with, for the status line.
+    pub busy: Option<String>,
+}
+
+impl Default for State {
+    fn default() -> Self {
+        Self {
+            panel: PanelState::default(),
+            show_panel: true,
+            show_presets: None,
+            show_overlay: false,
+            hide_all: false,
+            dialog: None,
+            toasts: Toasts::default(),
+            library: Library::default(),
+            viewport: ViewportState::default(),
+            busy: None,
+        }
+    }
+}
+
+impl State {
+    /// Whether the preset list is drawn in a window of this width.
+    fn presets_visible(&self, width: f32) -> bool {
+        self.show_presets.unwrap_or(width >= WIDE_ENOUGH_FOR_PRESETS)
+    }
+}
+
+/// The fonts: signs that the text font lacks, such as arrows, come from the monospaced one.
+pub fn fonts() -> egui::FontDefinitions {
+    let mut fonts = egui::FontDefinitions::default();
+    let monospaced = fonts.families.get(&egui::FontFamily::Monospace).cloned().unwrap_or_default();
+    let proportional = fonts.families.entry(egui::FontFamily::Proportional).or_default();
+    for font in monospaced {
+        if !proportional.contains(&font) {
+            proportional.push(font);
+        }
+    }
+    fonts
+}
+
+/// Sets up fonts, spacing and colours; once per context.
+pub fn style(context: &egui::Context) {
+    context.set_fonts(fonts());
+    context.all_styles_mut(|style| {
+        style.animation_time = 0.06;
+        style.spacing.item_spacing = egui::vec2(6.0, 4.0);
+        style.spacing.indent = 12.0;
+        style.spacing.scroll = egui::style::ScrollStyle::solid();
+        style.spacing.combo_height = 320.0;
+        style.visuals.slider_trailing_fill = true;
+        style.interaction.tooltip_delay = 0.35;
+    });
+}
+
+/// Draws everything, and returns what the user wants.
+pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Readout) -> Vec<Action> {
+    let mut actions = command::take(ui, state, document);
+    let width = ui.available_width();
+    if !state.hide_all {
+        let bar = egui::Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(8, 4));
+        egui::Panel::top("top bar").frame(bar).show(ui, |ui| top_bar::show(ui, state, document, &mut actions));
+        let most = (width * 0.55).max(260.0);
+        if state.show_panel {
+            let size = if width < 900.0 { 300.0 } else { 350.0 };
+            egui::Panel::right("parameters").default_size(size).size_range(260.0..=most).show(ui, |ui| {
+                ui.add_space(4.0);
+                actions.extend(panel::show(ui, &mut state.panel, &document.preset().scene, document.quality()));
+            });
+        }
+        if state.presets_visible(width) {
+            egui::Panel::left("presets").default_size(190.0).size_range(140.0..=300.0).show(ui, |ui| {
+                ui.add_space(4.0);
+                actions.extend(presets::show(ui, &mut state.library, document));
+            });
+        }
+    }
+    let central = egui::CentralPanel::no_frame().show(ui, |ui| {
+        viewport::show(ui, &mut state.viewport, document);
+    });
+    let area = central.response.rect;
+    if state.show_overlay && !state.hide_all {
+        overlay::show(ui.ctx(), area, readout);
+    }
+    dialogs::show(ui.ctx(), state, document, &mut actions);
+    state.toasts.show(ui.ctx(), area);
+    actions
+}
+
+/// The other theme.
+fn other(theme: Theme) -> Theme {
+    match theme {
+        Theme::Dark => Theme::Light,
+        Theme::Light => Theme::Dark,
+    }
+}

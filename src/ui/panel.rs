@@ -1,0 +1,312 @@
+//! The panel with every parameter: one visitor draws a row for each, whatever the scene grows.
+
+use egui::collapsing_header::CollapsingState;
+use egui::{RichText, Ui};
+
+use super::probe::{Probe, Reset, duplicate_last_from};
+use super::row;
+use crate::app::action::{Action, Browse, Request};
+use crate::scene::param::{Choice, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor};
+use crate::scene::{MAX_LAYERS, Quality, QualityLevel, Scene};
+
+/// Sections that are unfolded when the program starts for the first time.
+const OPEN_AT_FIRST: [&str; 2] = ["weather", "sun"];
+
+/// What the panel remembers between frames.
+#[derive(Clone, Debug, Default)]
+pub struct PanelState {
+    /// Text that a row's name, key or documentation must contain.
+    pub filter: String,
+}
+
+/// Draws the panel for a copy of the scene and the quality, and returns what the user did to them.
+pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: &Quality) -> Vec<Action> {
+    let mut actions = Vec::new();
+    filter_row(ui, state);
+    let filter = state.filter.trim().to_lowercase();
+    egui::ScrollArea::vertical().id_salt("parameters").auto_shrink([false; 2]).show(ui, |ui| {
+        quality_section(ui, &filter, quality, &mut actions);
+        let mut scene = scene.clone();
+        let mut rows = Rows::new(ui, &filter, String::new());
+        scene.visit(&mut rows);
+        let (edit, browse, shown) = (rows.edit, rows.browse, rows.shown);
+        if let Some(key) = edit {
+            actions.push(Action::EditScene { key, scene: Box::new(scene) });
+        }
+        if let Some(key) = browse {
+            actions.push(Action::Ask(Request::Browse(Browse::Parameter(key))));
+        }
+        if !shown && !filter.is_empty() && !quality_matches(quality, &filter) {
+            ui.add_space(8.0);
+            ui.weak(format!("No parameter matches “{}”.", state.filter.trim()));
+        }
+        ui.add_space(12.0);
+    });
+    actions
+}
+
+fn filter_row(ui: &mut Ui, state: &mut PanelState) {
+    ui.horizontal(|ui| {
+        let width = ui.available_width() - 30.0;
+        let edit = egui::TextEdit::singleline(&mut state.filter).hint_text("Filter parameters").desired_width(width);
+        let response =
+            ui.add(edit).on_hover_text("Shows only parameters whose name, key or help contains this (Ctrl+F)");
+        row::name(ui, &response, "Filter parameters", "filter");
+        if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, egui::Key::F)) {
+            response.request_focus();
+        }
+        let clear = ui.add_enabled(!state.filter.is_empty(), egui::Button::new("×")).on_hover_text("Clear the filter");
+        row::name(ui, &clear, "Clear filter", "filter.clear");
+        if clear.clicked() {
+            state.filter.clear();
+        }
+    });
+    ui.add_space(2.0);
+}
+
+fn quality_matches(quality: &Quality, filter: &str) -> bool {
+    let mut probe = Probe::new(filter, "quality");
+    quality.clone().visit(&mut probe);
+    probe.matches > 0
+}
+
+/// Quality stands above the scene: level buttons, then its rows.
+fn quality_section(ui: &mut Ui, filter: &str, quality: &Quality, actions: &mut Vec<Action>) {
+    if !filter.is_empty() && !quality_matches(quality, filter) {
+        return;
+    }
+    let mut edited = quality.clone();
+    let mut level = None;
+    let heading = Heading { title: "Quality", doc: Quality::DOC };
+    let mut edit = None;
+    let mut outer = Rows::new(ui, filter, String::new());
+    outer.section(heading, "quality", None, &mut |ui, key| {
+        ui.horizontal_wrapped(|ui| {
+            for option in QualityLevel::ALL {
+                let chosen = Quality::level(*option) == *quality;
+                if ui.selectable_label(chosen, option.title()).on_hover_text(option.doc()).clicked() {
+                    level = Some(*option);
+                }
+            }
+        });
+        let mut rows = Rows::new(ui, filter, format!("{key}."));
+        edited.visit(&mut rows);
+        edit = rows.edit;
+    });
+    if let Some(level) = level {
+        actions.push(Action::SetQualityLevel(level));
+    } else if let Some(key) = edit {
+        let key = key.trim_start_matches("quality.").to_owned();
+        actions.push(Action::EditQuality { key, quality: Box::new(edited) });
+    }
+}
+
+/// What a section's header offers beside folding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum HeaderButton {
+    Reset,
+    Duplicate,
+    Remove,
+}
+
+/// What a section's header says.
+#[derive(Clone, Copy, Debug)]
+struct Heading<'t> {
+    title: &'t str,
+    doc: &'t str,
+}
+
+/// Draws a row per parameter.
+struct Rows<'u> {
+    ui: &'u mut Ui,
+    filter: &'u str,
+    /// Key of the group the next parameters belong to, with a dot at its end.
+    prefix: String,
+    /// Key of the parameter that was edited, if any was.
+    edit: Option<String>,
+    /// Key of the file parameter for which a dialog is wanted.
+    browse: Option<String>,
+    /// Whether anything was drawn.
+    shown: bool,
+}
+
+impl<'u> Rows<'u> {
+    fn new(ui: &'u mut Ui, filter: &'u str, prefix: String) -> Self {
+        Self { ui, filter, prefix, edit: None, browse: None, shown: false }
+    }
+
+    /// Draws one row unless the filter hides it; `draw` returns whether the value changed.
+    fn row(&mut self, name: &str, doc: &str, draw: impl FnOnce(&mut Ui, &str) -> bool) {
+        let key = format!("{}{name}", self.prefix);
+        if !super::probe::fits(self.filter, &key, doc) {
+            return;
+        }
+        self.shown = true;
+        if draw(self.ui, &key) {
+            self.edit = Some(key);
+        }
+    }
+
+    /// Draws a foldable section; returns the button of its header that was pressed.
+    fn section(
+        &mut self,
+        heading: Heading<'_>,
+        key: &str,
+        buttons: Option<(&[HeaderButton], bool)>,
+        body: &mut dyn FnMut(&mut Ui, &str),
+    ) -> Option<HeaderButton> {
+        self.shown = true;
+        let id = self.ui.make_persistent_id(("section", key));
+        let open = OPEN_AT_FIRST.contains(&key) || key.ends_with(".0") && key.starts_with("weather");
+        let mut state = CollapsingState::load_with_default_open(self.ui.ctx(), id, open);
+        let filtering = !self.filter.is_empty();
+        if filtering && !state.is_open() {
+            state.set_open(true);
+        }
+        let mut pressed = None;
+        let mut toggle = false;
+        let header = state.show_header(self.ui, |ui| {
+            let title = egui::Button::new(RichText::new(heading.title).strong()).frame(false);
+            let response = ui.add(title).on_hover_text(format!("{}\n\nKey: {key}", heading.doc.trim()));
+            row::name(ui, &response, &format!("{} section", heading.title), key);
+            toggle = response.clicked();
+            let Some((buttons, modified)) = buttons else { return };
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                for button in buttons {
+                    if header_button(ui, *button, heading.title, (key, modified)) {
+                        pressed = Some(*button);
+                    }
+                }
+            });
+        });
+        let mut header = header;
+        if toggle && !filtering {
+            header.toggle();
+        }
+        header.body(|ui| body(ui, key));
+        if filtering {
+            // What the filter unfolded folds again when it is cleared.
+            let mut state = CollapsingState::load_with_default_open(self.ui.ctx(), id, open);
+            state.set_open(open);
+            state.store(self.ui.ctx());
+        }
+        pressed
+    }
+}
+
+fn header_button(ui: &mut Ui, button: HeaderButton, title: &str, (key, modified): (&str, bool)) -> bool {
+    let (icon, verb, enabled) = match button {
+        HeaderButton::Reset => ("↺", "Reset", modified),
+        HeaderButton::Duplicate => ("⊕", "Duplicate", true),
+        HeaderButton::Remove => ("×", "Remove", true),
+    };
+    let response = ui.add_enabled(enabled, egui::Button::new(icon).frame(false)).on_hover_text(match button {
+        HeaderButton::Reset => format!("Reset everything in {title} to its default"),
+        HeaderButton::Duplicate => format!("Add a copy of {title}"),
+        HeaderButton::Remove => format!("Remove {title}"),
+    });
+    row::name(ui, &response, &format!("{verb} {title}"), &format!("{key}.{}", verb.to_lowercase()));
+    response.clicked()
+}
+
+impl Visitor for Rows<'_> {
+    fn float(&mut self, info: &Info<f32>, value: &mut f32) {
+        self.row(info.name, info.doc, |ui, key| row::float(ui, key, info, value));
+    }
+
+    fn count(&mut self, info: &Info<u32>, value: &mut u32) {
+        self.row(info.name, info.doc, |ui, key| row::count(ui, key, info, value));
+    }
+
+    fn switch(&mut self, info: &Info<bool>, value: &mut bool) {
+        self.row(info.name, info.doc, |ui, key| row::switch(ui, key, info, value));
+    }
+
+    fn choice(&mut self, info: &ChoiceInfo, index: &mut usize) {
+        self.row(info.name, info.doc, |ui, key| row::choice(ui, key, info, index));
+    }
+
+    fn colour(&mut self, info: &Info<Colour>, value: &mut Colour) {
+        self.row(info.name, info.doc, |ui, key| row::colour(ui, key, info, value));
+    }
+
+    fn file(&mut self, info: &Info<FileName>, value: &mut FileName) {
+        let mut browse = false;
+        self.row(info.name, info.doc, |ui, key| row::file(ui, key, (info, value), &mut browse));
+        if browse {
+            self.browse = Some(format!("{}{}", self.prefix, info.name));
+        }
+    }
+
+    fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {
+        let key = format!("{}{}", self.prefix, info.name);
+        let mut probe = Probe::new(self.filter, &key);
+        children(&mut probe);
+        let filter = super::probe::for_children(self.filter, info.title);
+        if !filter.is_empty() && probe.matches == 0 {
+            return;
+        }
+        let mut edit = None;
+        let mut browse = None;
+        let buttons = (&[HeaderButton::Reset][..], probe.modified > 0);
+        let pressed =
+            self.section(Heading { title: info.title, doc: info.doc }, &key, Some(buttons), &mut |ui, key| {
+                let mut rows = Rows::new(ui, filter, format!("{key}."));
+                children(&mut rows);
+                edit = rows.edit.take();
+                browse = rows.browse.take();
+            });
+        if pressed == Some(HeaderButton::Reset) {
+            children(&mut Reset);
+            edit = Some(key);
+        }
+        self.edit = edit.or(self.edit.take());
+        self.browse = browse.or(self.browse.take());
+    }
+
+    fn list(&mut self, info: &GroupInfo, list: &mut dyn List) {
+        let key = format!("{}{}", self.prefix, info.name);
+        let mut press = None;
+        for index in 0..list.count() {
+            let item_key = format!("{key}.{index}");
+            let title = format!("{} {}", info.title, index + 1);
+            let mut probe = Probe::new(self.filter, &item_key);
+            list.visit_item(index, &mut probe);
+            let filter = super::probe::for_children(self.filter, &title);
+            if !filter.is_empty() && probe.matches == 0 {
+                continue;
+            }
+            let heading = Heading { title: &title, doc: info.doc };
+            let full = list.count() >= MAX_LAYERS;
+            let all = [HeaderButton::Remove, HeaderButton::Duplicate, HeaderButton::Reset];
+            let without_duplicate = [HeaderButton::Remove, HeaderButton::Reset];
+            let buttons: &[HeaderButton] = if full { &without_duplicate } else { &all };
+            let mut edit = None;
+            let mut browse = None;
+            let pressed = self.section(heading, &item_key, Some((buttons, probe.modified > 0)), &mut |ui, key| {
+                let mut rows = Rows::new(ui, filter, format!("{key}."));
+                list.visit_item(index, &mut rows);
+                edit = rows.edit.take();
+                browse = rows.browse.take();
+            });
+            self.edit = edit.or(self.edit.take());
+            self.browse = browse.or(self.browse.take());
+            press = press.or(pressed.map(|button| (index, button)));
+        }
+        if self.filter.is_empty() && list.count() < MAX_LAYERS {
+            let title = info.title.to_lowercase();
+            let response = self.ui.button(format!("+ Add {title}")).on_hover_text(format!("Adds another {title}"));
+            if response.clicked() {
+                list.append();
+                self.edit = Some(key.clone());
+            }
+        }
+        let Some((index, button)) = press else { return };
+        match button {
+            HeaderButton::Reset => list.visit_item(index, &mut Reset),
+            HeaderButton::Duplicate => duplicate_last_from(list, index),
+            HeaderButton::Remove => list.remove(index),
+        }
+        self.edit = Some(key);
+    }
+}

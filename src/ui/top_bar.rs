@@ -1,0 +1,129 @@
+//! The bar at the top: menus, time, and the document's name.
+
+use egui::{Align, Layout, Theme, Ui};
+
+use super::{Command, State, row};
+use crate::app::action::Action;
+use crate::app::document::{Document, TIME_FACTOR_RANGE};
+
+/// Draws the bar.
+pub(super) fn show(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        menus(ui, state, document, actions);
+        ui.separator();
+        time(ui, document, actions);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let title = document.title();
+            let title = if document.is_modified() { egui::RichText::new(title).strong() } else { title.into() };
+            let hint = match document.path() {
+                Some(path) => path.display().to_string(),
+                None => "Not saved to a file yet".to_owned(),
+            };
+            ui.add(egui::Label::new(title).truncate()).on_hover_text(hint);
+            if let Some(busy) = &state.busy {
+                ui.spinner();
+                ui.add(egui::Label::new(busy.as_str()).truncate());
+            }
+        });
+    });
+}
+
+fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
+    let mut chosen = None;
+    ui.menu_button("File", |ui| {
+        let groups = [
+            &[Command::New, Command::Open][..],
+            &[Command::Save, Command::SaveAs],
+            &[Command::Screenshot, Command::Export],
+            &[Command::Quit],
+        ];
+        entries(ui, &groups, &mut chosen);
+    });
+    ui.menu_button("View", |ui| {
+        let groups = [
+            &[Command::Presets, Command::Panel, Command::Overlay][..],
+            &[Command::HideAll, Command::FullScreen],
+            &[Command::ResetCamera, Command::Brighter, Command::Darker],
+        ];
+        entries(ui, &groups, &mut chosen);
+        ui.separator();
+        theme_and_scale(ui);
+    });
+    ui.menu_button("Help", |ui| entries(ui, &[&[Command::Shortcuts]], &mut chosen));
+    if let Some(command) = chosen {
+        command.run(ui, state, document, actions);
+    }
+}
+
+fn entries(ui: &mut Ui, groups: &[&[Command]], chosen: &mut Option<Command>) {
+    ui.set_min_width(230.0);
+    for (index, group) in groups.iter().enumerate() {
+        if index > 0 {
+            ui.separator();
+        }
+        for command in *group {
+            let keys = command.keys(ui.ctx());
+            if ui.add(egui::Button::new(command.title()).shortcut_text(keys)).clicked() {
+                *chosen = Some(*command);
+                ui.close();
+            }
+        }
+    }
+}
+
+fn theme_and_scale(ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        for (theme, title) in [(Theme::Light, "Light"), (Theme::Dark, "Dark")] {
+            if ui.selectable_label(ui.ctx().theme() == theme, title).clicked() {
+                ui.ctx().set_theme(theme);
+            }
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Size");
+        for percent in [75_u8, 100, 125, 150, 200] {
+            let factor = f32::from(percent) / 100.0;
+            let chosen = (ui.ctx().zoom_factor() - factor).abs() < 0.01;
+            if ui.selectable_label(chosen, format!("{percent} %")).clicked() {
+                ui.ctx().set_zoom_factor(factor);
+            }
+        }
+    });
+}
+
+fn time(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
+    let (icon, verb) = if document.is_playing() { ("▮▮", "Pause") } else { ("▶", "Play") };
+    let play = ui.button(icon).on_hover_text(format!("{verb} wind and time (Space)"));
+    row::name(ui, &play, verb, "time.play");
+    if play.clicked() {
+        actions.push(Action::Play(!document.is_playing()));
+    }
+    let reset = ui.add_enabled(document.time_secs() != 0.0, egui::Button::new("⇤")).on_hover_text("Time back to 0");
+    row::name(ui, &reset, "Reset time", "time.reset");
+    if reset.clicked() {
+        actions.push(Action::ResetTime);
+    }
+    ui.add(egui::Label::new(egui::RichText::new(clock(document.time_secs())).monospace()).selectable(false))
+        .on_hover_text("Time since the scene began");
+    let mut factor = document.time_factor();
+    let speed = factor.max(0.1) * 0.01;
+    let field = egui::DragValue::new(&mut factor)
+        .range(TIME_FACTOR_RANGE)
+        .speed(speed)
+        .prefix("×")
+        .update_while_editing(false)
+        .custom_formatter(|value, _| row::number(value))
+        .custom_parser(|text| row::parse(text.trim_start_matches('×')));
+    let field = ui.add(field).on_hover_text("Speed of time: seconds of the scene per second of the clock");
+    row::name(ui, &field, "Speed of time", "time.factor");
+    if field.changed() {
+        actions.push(Action::SetTimeFactor(factor));
+    }
+}
+
+/// Seconds as `h:mm:ss`.
+#[allow(clippy::cast_possible_truncation, reason = "centuries fit")]
+fn clock(seconds: f64) -> String {
+    let whole = seconds.max(0.0) as u64;
+    format!("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60)
+}

@@ -1,0 +1,354 @@
+//! The editor's panels driven as a user would, through their accessible names; no window, no device.
+
+use std::cell::RefCell;
+use std::path::Path;
+use std::rc::Rc;
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::{Queryable as _, by};
+use nephoscope::app::action::Request;
+use nephoscope::app::{Document, Folders, Session};
+use nephoscope::scene::{CloudLayer, Preset, Quality, QualityLevel, Scene};
+use nephoscope::ui::{Dialog, Readout};
+
+/// The panels with a session, and what was left for the window to do.
+struct Editor {
+    harness: Harness<'static, Session>,
+    requests: Rc<RefCell<Vec<Request>>>,
+    _folder: tempfile::TempDir,
+}
+
+impl Editor {
+    fn sized(size: [f32; 2]) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let document = Document::new(Preset::new("Test sky", Scene::default()), Quality::default());
+        let session = Session::new(document, Folders::below(folder.path()));
+        let requests = Rc::new(RefCell::new(Vec::new()));
+        let left = Rc::clone(&requests);
+        let harness = Harness::builder().with_size(size).with_context_setup(nephoscope::ui::style).build_ui_state(
+            move |ui, session: &mut Session| {
+                let requests = session.frame(ui, &Readout::default());
+                left.borrow_mut().extend(requests);
+            },
+            session,
+        );
+        Self { harness, requests, _folder: folder }
+    }
+
+    fn new() -> Self {
+        Self::sized([1280.0, 900.0])
+    }
+
+    fn document(&self) -> &Document {
+        &self.harness.state().document
+    }
+
+    fn scene(&self) -> &Scene {
+        &self.document().preset().scene
+    }
+
+    /// The widget of a parameter, by its key; scrolls to it as a user would.
+    fn reach(&mut self, key: &str) {
+        self.with_key(key).scroll_to_me();
+        self.harness.run();
+    }
+
+    fn with_key<'e>(&'e self, key: &'e str) -> egui_kittest::Node<'e> {
+        self.harness.get(by().predicate(move |node| node.author_id() == Some(key)))
+    }
+
+    fn click(&mut self, key: &str) {
+        self.reach(key);
+        self.with_key(key).click();
+        self.harness.run();
+    }
+
+    fn click_label(&mut self, label: &str) {
+        self.harness.get_by_label(label).click();
+        self.harness.run();
+    }
+
+    /// Types into the number field of a parameter.
+    fn type_number(&mut self, key: &str, text: &str) {
+        let field = format!("{key}.value");
+        self.reach(&field);
+        self.with_key(&field).click();
+        self.harness.run();
+        self.harness.key_combination_modifiers(egui::Modifiers::COMMAND, &[egui::Key::A]);
+        self.harness.run();
+        self.harness.event(egui::Event::Text(text.to_owned()));
+        self.harness.run();
+        self.harness.key_press(egui::Key::Enter);
+        self.harness.run();
+    }
+
+    fn is_disabled(&self, key: &str) -> bool {
+        self.harness.query(by().predicate(|node| node.author_id() == Some(key) && node.is_disabled())).is_some()
+    }
+
+    fn toasts(&self) -> Vec<String> {
+        self.harness.state().ui.toasts.texts().map(str::to_owned).collect()
+    }
+
+    fn has_label(&self, text: &str) -> bool {
+        self.harness.query_all_by_label_contains(text).next().is_some()
+    }
+}
+
+#[test]
+fn an_edit_reaches_the_document_and_marks_it() {
+    let mut editor = Editor::new();
+    assert!(editor.has_label("Test sky"), "the name is shown");
+    editor.type_number("weather.coverage", "0.8");
+    assert_eq!(editor.scene().weather.coverage, 0.8);
+    assert!(editor.document().is_modified() && editor.has_label("Test sky*"), "the unsaved mark is shown");
+}
+
+#[test]
+fn sliders_are_draggable() {
+    let mut editor = Editor::new();
+    let rect = editor.with_key("weather.coverage").rect();
+    editor.harness.drag_at(rect.center());
+    editor.harness.run();
+    editor.harness.hover_at(rect.right_center());
+    editor.harness.run();
+    editor.harness.drop_at(rect.right_center());
+    editor.harness.run();
+    assert!(editor.scene().weather.coverage > 0.9, "{}", editor.scene().weather.coverage);
+}
+
+#[test]
+fn typed_nonsense_and_values_out_of_range_do_no_harm() {
+    let mut editor = Editor::new();
+    for text in ["NaN", "inf", "cloudy"] {
+        editor.type_number("weather.coverage", text);
+        assert_eq!(editor.scene(), &Scene::default(), "after {text}");
+    }
+    editor.type_number("weather.coverage", "7");
+    assert_eq!(editor.scene().weather.coverage, 1.0, "the end of the range");
+}
+
+#[test]
+fn rows_reset_to_their_default() {
+    let mut editor = Editor::new();
+    assert!(editor.is_disabled("weather.coverage.reset"), "nothing to reset");
+    editor.type_number("weather.coverage", "0.8");
+    editor.click("weather.coverage.reset");
+    assert_eq!(editor.scene(), &Scene::default());
+    assert!(!editor.document().is_modified(), "and the mark is gone");
+}
+
+#[test]
+fn sections_fold_and_reset() {
+    let mut editor = Editor::new();
+    editor.type_number("weather.coverage", "0.8");
+    editor.type_number("weather.size_m", "5000 m");
+    assert_eq!(editor.scene().weather.size_m, 5000.0, "units may be typed");
+    editor.click("weather.reset");
+    assert_eq!(editor.scene(), &Scene::default());
+    editor.click("weather");
+    assert!(editor.harness.query(by().predicate(|node| node.author_id() == Some("weather.coverage"))).is_none());
+    editor.click("weather");
+    editor.reach("weather.coverage");
+}
+
+#[test]
+fn the_filter_shows_what_matches_wherever_it_is_folded() {
+    let mut editor = Editor::new();
+    let g = "layers.0.phase.g";
+    let is_g = |node: &egui_kittest::kittest::AccessKitNode<'_>| node.author_id() == Some(g);
+    assert!(editor.harness.query(by().predicate(is_g)).is_none(), "folded");
+    editor.with_key("filter").focus();
+    editor.harness.run();
+    editor.harness.event(egui::Event::Text("anisotropy".to_owned()));
+    editor.harness.run();
+    assert!(editor.harness.query(by().predicate(is_g)).is_some(), "found by its help text");
+    assert!(
+        editor.harness.query(by().predicate(|node| node.author_id() == Some("weather.coverage"))).is_none(),
+        "what does not match is hidden"
+    );
+    editor.click("filter.clear");
+    assert!(editor.harness.query(by().predicate(is_g)).is_none(), "folded again");
+}
+
+#[test]
+fn layers_are_added_duplicated_and_removed() {
+    let mut editor = Editor::new();
+    editor.reach("layers.0");
+    editor.click_label("+ Add cloud layer");
+    assert_eq!(editor.scene().layers.len(), 2);
+    editor.click("layers.1.remove");
+    assert_eq!(editor.scene().layers, vec![CloudLayer::default()]);
+    editor.click("layers.0.duplicate");
+    editor.click("layers.0.duplicate");
+    editor.click("layers.0.duplicate");
+    assert_eq!(editor.scene().layers.len(), 4);
+    assert!(!editor.has_label("+ Add cloud layer"), "no more than the march takes");
+}
+
+#[test]
+fn quality_levels_and_rows_change_quality_alone() {
+    let mut editor = Editor::new();
+    editor.click("quality");
+    editor.click_label("Draft");
+    assert_eq!(editor.document().quality_level(), Some(QualityLevel::Draft));
+    editor.type_number("quality.view_steps", "77");
+    assert_eq!(editor.document().quality().view_steps, 77);
+    assert!(!editor.document().is_modified(), "quality belongs to the user, not to the preset");
+}
+
+#[test]
+fn unsaved_changes_are_asked_about_before_another_sky_opens() {
+    let mut editor = Editor::new();
+    editor.type_number("weather.coverage", "0.8");
+    let other = editor.harness.state().ui.library.builtin[1].name.clone();
+    editor.click_label(&other);
+    assert!(editor.has_label("Save changes?"), "asked");
+    editor.click_label("Cancel");
+    assert_eq!(editor.scene().weather.coverage, 0.8, "cancel keeps");
+    editor.click_label(&other);
+    editor.click_label("Discard");
+    assert_eq!(editor.document().preset().name, other);
+    assert!(!editor.document().is_modified(), "a fresh preset");
+}
+
+#[test]
+fn saving_first_goes_on_only_when_it_worked() {
+    let mut editor = Editor::new();
+    editor.type_number("weather.coverage", "0.8");
+    editor.harness.key_combination_modifiers(egui::Modifiers::COMMAND, &[egui::Key::N]);
+    editor.harness.run();
+    editor.click_label("Save");
+    assert!(matches!(editor.harness.state().ui.dialog, Some(Dialog::SaveAs { .. })), "asks where");
+    set_path(&mut editor, Path::new("/no/such/folder/sky.ron"));
+    editor.click_label("Save");
+    assert!(editor.toasts().iter().any(|text| text.contains("/no/such/folder")), "{:?}", editor.toasts());
+    assert_eq!(editor.scene().weather.coverage, 0.8, "nothing was lost");
+    assert!(editor.document().is_modified(), "and it still counts as unsaved");
+}
+
+fn set_path(editor: &mut Editor, path: &Path) {
+    match &mut editor.harness.state_mut().ui.dialog {
+        Some(dialog) => dialog.set_path(path.display().to_string()),
+        None => panic!("no dialog is open"),
+    }
+    editor.harness.run();
+}
+
+#[test]
+fn what_is_saved_opens_again() {
+    let mut editor = Editor::new();
+    editor.type_number("weather.coverage", "0.8");
+    let path = editor.harness.state().folders.presets.join("mine.ron");
+    editor.harness.key_combination_modifiers(egui::Modifiers::COMMAND | egui::Modifiers::SHIFT, &[egui::Key::S]);
+    editor.harness.run();
+    set_path(&mut editor, &path);
+    editor.click_label("Save");
+    assert!(!editor.document().is_modified(), "{:?}", editor.toasts());
+    assert_eq!(editor.harness.state().ui.library.user.len(), 1, "listed among the user's");
+    editor.harness.key_combination_modifiers(egui::Modifiers::COMMAND, &[egui::Key::N]);
+    editor.harness.run();
+    assert_eq!(editor.scene(), &Scene::default(), "nothing to ask");
+    editor.harness.state_mut().open(&path);
+    assert_eq!(editor.scene().weather.coverage, 0.8);
+}
+
+#[test]
+fn broken_files_leave_the_document_and_say_where() {
+    let mut editor = Editor::new();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let cases = [
+        ("broken.ron", "(version: 2, scene: (".as_bytes()),
+        ("unknown.ron", "(version: 2, scene: (weather: (coverag: 0.5)))".as_bytes()),
+        ("range.ron", "(version: 2, scene: (weather: (coverage: 7.0)))".as_bytes()),
+        ("nan.ron", "(version: 2, scene: (weather: (coverage: NaN)))".as_bytes()),
+        ("type.ron", "(version: 2, scene: (weather: (coverage: \"much\")))".as_bytes()),
+        ("binary.ron", &[0xff, 0xfe, 0x00]),
+        ("picture.exr", b"not an image"),
+    ];
+    let before = editor.document().preset().clone();
+    for (name, contents) in cases {
+        let path = folder.path().join(name);
+        std::fs::write(&path, contents).expect("the folder is writable");
+        editor.harness.state_mut().open(&path);
+        editor.harness.run();
+        let toasts = editor.toasts();
+        assert!(toasts.last().is_some_and(|text| text.contains(name)), "{name}: {toasts:?}");
+        assert_eq!(editor.document().preset(), &before, "{name}");
+    }
+    editor.harness.state_mut().open(&folder.path().join("missing.ron"));
+    assert!(editor.toasts().last().is_some_and(|text| text.contains("missing.ron")), "{:?}", editor.toasts());
+}
+
+#[test]
+fn closing_with_changes_asks_and_without_quits() {
+    let mut editor = Editor::new();
+    let quit = |editor: &mut Editor| {
+        editor.harness.key_combination_modifiers(egui::Modifiers::COMMAND, &[egui::Key::Q]);
+        editor.harness.run();
+    };
+    editor.type_number("weather.coverage", "0.8");
+    quit(&mut editor);
+    assert!(editor.has_label("before you quit"), "asked");
+    assert!(editor.requests.borrow().is_empty(), "still open");
+    editor.click_label("Discard");
+    assert_eq!(*editor.requests.borrow(), vec![Request::Quit]);
+}
+
+#[test]
+fn the_theme_and_the_panels_toggle() {
+    let mut editor = Editor::new();
+    let before = editor.harness.ctx.theme();
+    editor.harness.key_combination_modifiers(egui::Modifiers::COMMAND | egui::Modifiers::SHIFT, &[egui::Key::L]);
+    editor.harness.run();
+    assert_ne!(editor.harness.ctx.theme(), before);
+    editor.harness.key_press(egui::Key::F10);
+    editor.harness.run();
+    assert!(editor.has_label("Time per picture"), "the overlay");
+    assert!(editor.has_label("n/a"), "what was not measured is no number");
+    editor.harness.key_press(egui::Key::F1);
+    editor.harness.run();
+    assert!(editor.has_label("Orbit the point ahead"), "the sheet");
+    editor.harness.key_press(egui::Key::F1);
+    editor.harness.run();
+    editor.harness.key_press(egui::Key::Tab);
+    editor.harness.run();
+    assert!(!editor.has_label("Parameters") && editor.harness.query_by_label("File").is_none(), "only the picture");
+    editor.harness.key_press(egui::Key::Tab);
+    editor.harness.run();
+    assert!(editor.harness.query_by_label("File").is_some(), "and back");
+}
+
+#[test]
+fn every_widget_has_a_name_and_nothing_leaves_a_small_window() {
+    // The harness itself fails on widgets without accessible names.
+    let mut editor = Editor::sized([800.0, 600.0]);
+    for key in ["quality", "layers.0", "wind", "moon", "scattering", "air", "ground", "domain", "camera", "display"] {
+        editor.click(key);
+    }
+    editor.click("layers.0.phase");
+    editor.click("weather.layers.0");
+    let screen = editor.harness.ctx.content_rect();
+    let buttons = editor.harness.query_all(by().predicate(|node| node.author_id().is_some()));
+    let mut seen = 0;
+    for node in buttons {
+        let rect = node.rect();
+        assert!(rect.min.x >= screen.min.x - 0.5 && rect.max.x <= screen.max.x + 0.5, "{node:?} at {rect:?}");
+        seen += 1;
+    }
+    assert!(seen > 150, "only {seen} widgets were looked at");
+}
+
+#[test]
+fn time_plays_and_returns() {
+    let mut editor = Editor::new();
+    editor.harness.key_press(egui::Key::Space);
+    editor.harness.run();
+    assert!(editor.document().is_playing(), "Space plays");
+    editor.harness.state_mut().document.advance_clock(90.0);
+    editor.harness.run();
+    assert!(editor.has_label("0:01:30"), "the time is shown");
+    editor.click("time.play");
+    editor.click("time.reset");
+    assert!(!editor.document().is_playing() && editor.document().time_secs() == 0.0);
+}
