@@ -23,6 +23,7 @@ pub mod cli;
 pub mod export;
 pub mod files;
 pub mod gpu;
+pub mod images;
 pub mod lab;
 pub mod plan;
 pub mod reference;

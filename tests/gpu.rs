@@ -3,10 +3,16 @@
 mod common;
 
 mod gpu {
+    mod absent;
+    mod density;
+    mod frames;
     mod math;
     mod noise;
     mod phase;
+    mod physics;
     mod random;
     mod shaders;
     mod shell;
+    mod temporal;
+    mod textures;
 }

@@ -147,7 +147,10 @@ const CLEAR_SAMPLES: u32 = 6u;
 // to find its surface; inside, steps of equal optical depth, longer where little is left to see.
 fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
   var seen = seen_before;
-  var t = segment.x + jitter * (scene.step_m + scene.step_growth * segment.x);
+  // How much of the way before a sample still counts as its own: the last step makes up for it, so that even cloud
+  // absorbs what the whole stretch absorbs, whatever the jitter.
+  var behind = jitter * (scene.step_m + scene.step_growth * segment.x);
+  var t = segment.x + behind;
   var advanced = 0.0;
   var clear_samples = CLEAR_SAMPLES;
   while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
@@ -164,17 +167,21 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       clear_samples += 1u;
       let ordinary = select(step, step * scene.empty_stride, clear_samples > CLEAR_SAMPLES + 3u);
       advanced = select(surface_step, ordinary, clear_samples > CLEAR_SAMPLES);
+      // On average cloud begins half way to the next sample.
+      behind = 0.5 * advanced;
       t += advanced;
     } else if (advanced > 1.5 * surface_step && media.extinction * step > 0.5 * scene.step_depth) {
       // Entered a dense cloud from clear air: go back to look for its surface.
       t -= advanced - surface_step;
+      behind = 0.5 * surface_step;
       advanced = 0.0;
       clear_samples = 0u;
     } else {
       clear_samples = 0u;
       advanced = 0.0;
-      let length = min(step, max(scene.step_depth / (media.extinction * max(seen.transmittance, 0.15)), surface_step));
-      let alpha = absorbed(media.extinction * min(length, max(segment.y - t + 0.5 * step, 0.0)));
+      let wanted = min(step, max(scene.step_depth / (media.extinction * max(seen.transmittance, 0.15)), surface_step));
+      let length = select(wanted, segment.y - t + behind, t + wanted >= segment.y);
+      let alpha = absorbed(media.extinction * length);
       let share = seen.transmittance * alpha;
 #if AIR
       let ahead = air_before(dir, t);

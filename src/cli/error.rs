@@ -4,7 +4,7 @@ use std::io::IsTerminal as _;
 use std::process::ExitCode;
 
 use crate::export::ExportError;
-use crate::export::pattern::PatternError;
+use crate::images::pattern::PatternError;
 use crate::files::FileError;
 use crate::gpu::GpuError;
 use crate::render::RenderError;

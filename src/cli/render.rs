@@ -13,7 +13,7 @@ use super::json::Json;
 use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
-use crate::export::pattern::{FramePattern, parse_frame_range};
+use crate::images::pattern::{FramePattern, parse_frame_range};
 use crate::files::{self, About, save_exr, save_png};
 use crate::gpu::Gpu;
 use crate::render::Renderer;

@@ -12,7 +12,8 @@ use ::exr::prelude::{AttributeValue, Text, WritableImage as _};
 use half::f16;
 
 use super::atomic::write_atomically;
-use super::{ExportError, sha256_hex};
+use super::ExportError;
+use crate::images::{Crop, FloatImage, find_non_finite, position, sha256_hex};
 
 /// Prefix of the attributes that only Nephoscope understands.
 pub const PREFIX: &str = "nephoscope:";
@@ -35,35 +36,6 @@ pub const MAX_EMBEDDED_FILE_BYTES: usize = 8 << 20;
 const MAX_NAME_BYTES: usize = 255;
 /// The largest finite half-precision number.
 const HALF_MAX: f32 = 65504.0;
-
-/// Scene-linear pixels, rows from the top.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FloatImage {
-    /// Pixels in a row.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-    /// Linear Rec.709 with associated alpha: colour is already multiplied by coverage, and may exceed alpha.
-    pub rgba: Vec<[f32; 4]>,
-    /// Camera-space distance to the plane of each pixel, m; always stored as 32-bit float in channel `Z`.
-    /// Where nothing is covered, put a large finite number.
-    pub depth: Option<Vec<f32>>,
-    /// Where these pixels lie if they are only a part of the frame.
-    pub crop: Option<Crop>,
-}
-
-/// Position of a rendered region (the data window) in its full frame (the display window), pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Crop {
-    /// Left edge of the region.
-    pub x: u32,
-    /// Top edge of the region.
-    pub y: u32,
-    /// Width of the full frame.
-    pub full_width: u32,
-    /// Height of the full frame.
-    pub full_height: u32,
-}
 
 /// A user's file (a weather map, say) carried inside an EXR so that the sky can be made again elsewhere.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -235,25 +207,6 @@ fn check_sizes(path: &Path, image: &FloatImage) -> Result<(), ExportError> {
     Ok(())
 }
 
-/// How many pixels are not finite, with the index and the channel of the first.
-pub(super) fn find_non_finite(rgba: &[[f32; 4]], depth: Option<&[f32]>) -> Option<(usize, usize, char)> {
-    let bad_channel = |index: usize| {
-        let z = depth.map_or(0.0, |depth| depth[index]);
-        let [r, g, b, a] = rgba[index];
-        [('R', r), ('G', g), ('B', b), ('A', a), ('Z', z)].into_iter().find(|(_, value)| !value.is_finite())
-    };
-    let mut bad = (0..rgba.len()).filter_map(|index| Some((index, bad_channel(index)?.0)));
-    let (first, channel) = bad.next()?;
-    Some((1 + bad.count(), first, channel))
-}
-
-/// Column and row of a pixel index.
-pub(super) fn position(index: usize, width: u32) -> (u32, u32) {
-    let width = width.max(1) as usize;
-    let coordinate = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
-    (coordinate(index % width), coordinate(index / width))
-}
-
 fn check_finite(path: &Path, image: &FloatImage) -> Result<(), ExportError> {
     match find_non_finite(&image.rgba, image.depth.as_deref()) {
         None => Ok(()),
@@ -402,7 +355,7 @@ fn is_cap_date(date: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::map::read_exr;
+    use crate::images::map::read_exr;
     use super::*;
 
     /// A small picture with values that half and float treat differently.

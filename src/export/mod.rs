@@ -1,4 +1,4 @@
-//! Files that leave the program and come back: EXR, PNG, numbered sequences and user weather maps.
+//! Files that leave the program and come back: EXR and PNG, with the preset inside.
 //!
 //! This folder knows pixels and strings only. It never sees the scene or the renderer: a preset travels through it
 //! as text, a camera as sixteen numbers. Every file is written by [`atomic::write_atomically`], so that a full disk,
@@ -6,15 +6,13 @@
 
 pub mod atomic;
 pub mod exr;
-pub mod map;
-pub mod pattern;
 pub mod png;
 pub mod preset;
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest as _, Sha256};
+use crate::images::ImageError;
 
 /// What can go wrong when a file is written or read back. Each message names the file and says what to do.
 #[derive(Debug, thiserror::Error)]
@@ -91,7 +89,7 @@ pub enum ExportError {
          nothing was written, please report the preset that made them"
     )]
     NonFinite {
-        /// The file that was to be written, or was read.
+        /// The file that was to be written.
         path: PathBuf,
         /// How many pixels hold a NaN or an infinity in any channel.
         count: usize,
@@ -127,40 +125,9 @@ pub enum ExportError {
         /// What is wrong with it.
         reason: String,
     },
-    /// The file to be read does not exist.
-    #[error("cannot read {path}: there is no such file; check the path")]
-    FileMissing {
-        /// The path as given.
-        path: PathBuf,
-    },
-    /// The file exists but cannot be read.
-    #[error("cannot read {path}: {cause}; check its permissions")]
-    NotReadable {
-        /// The path as given.
-        path: PathBuf,
-        /// The failure reported by the operating system.
-        cause: io::Error,
-    },
-    /// The file is neither an EXR nor a PNG.
-    #[error("{path} is neither an OpenEXR nor a PNG image; only these two can be read")]
-    WrongFormat {
-        /// The file that was read.
-        path: PathBuf,
-    },
-    /// The file ends too early.
-    #[error("{path} is truncated: it ends in the middle; copy or export it again")]
-    Truncated {
-        /// The file that was read.
-        path: PathBuf,
-    },
-    /// The file contradicts its format, or uses a part of it that is not supported.
-    #[error("{path} cannot be understood: {reason}; export it again from the program that made it")]
-    Corrupt {
-        /// The file that was read.
-        path: PathBuf,
-        /// The decoder's own words.
-        reason: String,
-    },
+    /// An image could not be read.
+    #[error(transparent)]
+    Image(#[from] ImageError),
     /// A whole image, but without a preset inside.
     #[error(
         "{path} holds no sky; it was not written by Nephoscope, or another program dropped its metadata. \
@@ -178,55 +145,6 @@ pub enum ExportError {
         /// The embedded file.
         name: String,
     },
-    /// A map must be square, because it tiles the ground.
-    #[error("{path} is {width} x {height} pixels; a map must be square, crop or resize it")]
-    NotSquare {
-        /// The map.
-        path: PathBuf,
-        /// Its width, pixels.
-        width: u32,
-        /// Its height, pixels.
-        height: u32,
-    },
-    /// A map is larger than the renderer takes.
-    #[error("{path} is {width} x {height} pixels; a map may be at most {limit} x {limit}, make it smaller")]
-    TooLarge {
-        /// The map.
-        path: PathBuf,
-        /// Its width, pixels.
-        width: u32,
-        /// Its height, pixels.
-        height: u32,
-        /// The largest side that is taken, pixels.
-        limit: u32,
-    },
-    /// The file has more bytes than is sensible for a map.
-    #[error("{path} has {bytes} bytes; a map may have at most {limit}, make it smaller or compress it")]
-    TooManyBytes {
-        /// The map.
-        path: PathBuf,
-        /// Its size, bytes.
-        bytes: u64,
-        /// The most that is taken, bytes.
-        limit: u64,
-    },
-    /// NaN or infinity in an image that was read.
-    #[error(
-        "{path} holds {count} pixel(s) that are not finite, the first at x = {x}, y = {y}, channel {channel}; \
-         replace them in the program that made the image"
-    )]
-    NonFiniteInput {
-        /// The file that was read.
-        path: PathBuf,
-        /// How many pixels hold a NaN or an infinity.
-        count: usize,
-        /// Column of the first such pixel, from the left.
-        x: u32,
-        /// Row of the first such pixel, from the top.
-        y: u32,
-        /// The first channel of that pixel that is not finite.
-        channel: char,
-    },
 }
 
 impl ExportError {
@@ -239,39 +157,11 @@ impl ExportError {
             _ => Self::Write { path, cause },
         }
     }
-
-    /// Sorts a failure of the operating system while reading `path` into the variants a user can act on.
-    #[must_use]
-    pub fn reading(path: &Path, cause: io::Error) -> Self {
-        let path = path.to_owned();
-        match cause.kind() {
-            io::ErrorKind::NotFound => Self::FileMissing { path },
-            io::ErrorKind::UnexpectedEof => Self::Truncated { path },
-            _ => Self::NotReadable { path, cause },
-        }
-    }
-}
-
-/// The SHA-256 sum of `bytes` as 64 lower-case hexadecimal digits.
-#[must_use]
-pub fn sha256_hex(bytes: &[u8]) -> String {
-    use std::fmt::Write as _;
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut hex, byte| {
-        // Writing into a String cannot fail.
-        let _ = write!(hex, "{byte:02x}");
-        hex
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn sha256_matches_the_published_vector() {
-        // FIPS 180-2, appendix B.1.
-        assert_eq!(sha256_hex(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-    }
 
     #[test]
     fn failures_of_the_system_are_sorted() {
@@ -280,6 +170,5 @@ mod tests {
         #[cfg(unix)]
         assert!(matches!(ExportError::writing(path, io::Error::from_raw_os_error(28)), ExportError::DiskFull { .. }));
         assert!(matches!(ExportError::writing(path, io::ErrorKind::BrokenPipe.into()), ExportError::Write { .. }));
-        assert!(matches!(ExportError::reading(path, io::ErrorKind::NotFound.into()), ExportError::FileMissing { .. }));
     }
 }

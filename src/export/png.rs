@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::ExportError;
 use super::atomic::write_atomically;
+use crate::images::ImageError;
 
 /// Interleaved pixels, rows from the top. Alpha is straight (not premultiplied), as PNG demands.
 #[derive(Clone, Copy, Debug)]
@@ -130,10 +131,10 @@ fn encoding(path: &Path, error: ::png::EncodingError) -> ExportError {
     }
 }
 
-fn decoding(path: &Path, error: ::png::DecodingError) -> ExportError {
+fn decoding(path: &Path, error: ::png::DecodingError) -> ImageError {
     match error {
-        ::png::DecodingError::IoError(cause) => ExportError::reading(path, cause),
-        other => ExportError::Corrupt { path: path.to_owned(), reason: other.to_string() },
+        ::png::DecodingError::IoError(cause) => ImageError::reading(path, cause),
+        other => ImageError::Corrupt { path: path.to_owned(), reason: other.to_string() },
     }
 }
 

@@ -9,8 +9,10 @@ use ::exr::meta::header::Header;
 use ::exr::prelude::{AttributeValue, Text};
 
 use super::exr::{EmbeddedFile, FILE_PREFIX, PRESET, PRESET_VERSION, QUALITY, SHA256_PREFIX};
-use super::map::{EXR_MAGIC, PNG_MAGIC, exr_failure};
-use super::{ExportError, png, sha256_hex};
+
+use super::{ExportError, png};
+use crate::images::map::{EXR_MAGIC, PNG_MAGIC, exr_failure};
+use crate::images::{ImageError, sha256_hex};
 
 /// What a picture says about how it was made.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,7 +36,7 @@ pub struct EmbeddedPreset {
 /// If the file is missing, unreadable, neither EXR nor PNG, truncated within the header, damaged, holds no preset, or
 /// if an embedded file does not match its sum.
 pub fn read_preset(path: &Path) -> Result<EmbeddedPreset, ExportError> {
-    let reading = |error| ExportError::reading(path, error);
+    let reading = |error| ImageError::reading(path, error);
     let mut file = File::open(path).map_err(reading)?;
     let mut magic = Vec::new();
     file.by_ref().take(PNG_MAGIC.len() as u64).read_to_end(&mut magic).map_err(reading)?;
@@ -49,7 +51,7 @@ pub fn read_preset(path: &Path) -> Result<EmbeddedPreset, ExportError> {
         file.read_to_end(&mut bytes).map_err(reading)?;
         preset_of_png(path, &bytes)
     } else {
-        Err(ExportError::WrongFormat { path: path.to_owned() })
+        Err(ImageError::WrongFormat { path: path.to_owned() }.into())
     }
 }
 
@@ -106,20 +108,20 @@ fn preset_of_png(path: &Path, bytes: &[u8]) -> Result<EmbeddedPreset, ExportErro
 }
 
 fn utf8(path: &Path, name: &str, text: &Text) -> Result<String, ExportError> {
-    String::from_utf8(text.bytes().to_vec()).map_err(|_| ExportError::Corrupt {
-        path: path.to_owned(),
-        reason: format!("the text of the attribute `{name}` is not UTF-8"),
+    String::from_utf8(text.bytes().to_vec()).map_err(|_| {
+        let reason = format!("the text of the attribute `{name}` is not UTF-8");
+        ImageError::Corrupt { path: path.to_owned(), reason }.into()
     })
 }
 
 fn no_version(path: &Path) -> ExportError {
     let reason = format!("it holds a preset but no whole number in `{PRESET_VERSION}`");
-    ExportError::Corrupt { path: path.to_owned(), reason }
+    ImageError::Corrupt { path: path.to_owned(), reason }.into()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::exr::{ExrMetadata, ExrOptions, FloatImage, MAX_EMBEDDED_FILE_BYTES, write_exr};
+    use super::super::exr::{ExrMetadata, ExrOptions, MAX_EMBEDDED_FILE_BYTES, write_exr};
     use super::super::png::{PngPixels, write_png};
     use super::*;
     use std::fs;
@@ -175,10 +177,10 @@ mod tests {
     fn other_files_are_told_apart() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sky.exr");
-        assert!(matches!(read_preset(&path), Err(ExportError::FileMissing { .. })));
+        assert!(matches!(read_preset(&path), Err(ExportError::Image(ImageError::FileMissing { .. }))));
         for contents in [&b""[..], b"v/", b"plain text"] {
             fs::write(&path, contents).unwrap();
-            assert!(matches!(read_preset(&path), Err(ExportError::WrongFormat { .. })));
+            assert!(matches!(read_preset(&path), Err(ExportError::Image(ImageError::WrongFormat { .. }))));
         }
     }
 
@@ -189,7 +191,7 @@ mod tests {
         for length in [4, 8, 20, 300] {
             fs::write(&path, &bytes[..length]).unwrap();
             let result = read_preset(&path);
-            assert!(matches!(result, Err(ExportError::Truncated { .. })), "{length}: {result:?}");
+            assert!(matches!(result, Err(ExportError::Image(ImageError::Truncated { .. }))), "{length}: {result:?}");
         }
         fs::write(&path, &bytes[..bytes.len() - 10]).unwrap();
         assert_eq!(read_preset(&path).unwrap().preset_ron, RON);

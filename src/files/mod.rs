@@ -15,6 +15,7 @@ pub use picture::{About, save_exr, save_png};
 
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
+use crate::images::ImageError;
 use crate::scene::edit::map_files;
 use crate::scene::{Preset, PresetError, Quality, quality_from_ron, quality_to_ron};
 
@@ -66,7 +67,7 @@ pub enum FileError {
 }
 
 fn read_text(path: &Path) -> Result<String, FileError> {
-    let reading = |error| FileError::Export(ExportError::reading(path, error));
+    let reading = |error| FileError::Export(ImageError::reading(path, error).into());
     let mut bytes = Vec::new();
     File::open(path).map_err(reading)?.take(MAX_PRESET_BYTES + 1).read_to_end(&mut bytes).map_err(reading)?;
     if bytes.len() as u64 > MAX_PRESET_BYTES {

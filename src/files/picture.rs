@@ -5,7 +5,8 @@ use std::path::Path;
 use glam::{Mat4, Vec3, Vec4};
 
 use super::FileError;
-use crate::export::exr::{EmbeddedFile, ExrDepth, ExrMetadata, ExrOptions, FloatImage, PRESET, QUALITY, write_exr};
+use crate::export::exr::{EmbeddedFile, ExrDepth, ExrMetadata, ExrOptions, PRESET, QUALITY, write_exr};
+use crate::images::FloatImage;
 use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME};
 use crate::export::png::{PngPixels, write_png};
 use crate::render::LinearImage;

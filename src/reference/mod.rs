@@ -1,10 +1,11 @@
 //! CPU twins of the WGSL functions, for tests: same names, same arguments.
 //!
 //! What is exact arithmetic on paper ([`math`], [`phase`], [`shell`]) is computed in `f64`, mostly in another form than
-//! the shader's, so that the shader's rounding shows. Random numbers and noise ([`random`], [`noise`]) mirror the
+//! the shader's, so that the shader's rounding shows. Random numbers, noise and density ([`random`], [`noise`], [`density`]) mirror the
 //! shader's `f32` and `u32` steps, so that lattice cells and hashes are the same bits.
 
 pub mod air;
+pub mod density;
 pub mod math;
 pub mod noise;
 pub mod phase;

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::{Progress, RenderError, Renderer, bakes, pass, passes};
+use super::{Progress, RenderError, Renderer};
 use crate::gpu::{Job, job};
 use crate::plan::FramePlan;
 use crate::scene::Frame;
@@ -57,8 +57,7 @@ impl Renderer {
 
     fn is_ready(&self, plan: &FramePlan) -> Result<bool, RenderError> {
         let mut is_ready = true;
-        let bakes = pass::sky::programs().into_iter().chain(bakes::programs(plan));
-        for key in passes::programs(plan, true).into_iter().chain(bakes) {
+        for key in super::programs(plan) {
             is_ready &= self.programs.ready_or_start(&key)?;
         }
         Ok(is_ready)

@@ -20,7 +20,7 @@ mod weather;
 use std::collections::VecDeque;
 use std::time::Instant;
 
-use crate::gpu::{Gpu, GpuError, Job, PassTime, ProgramCache, Texture, TimingSource, job};
+use crate::gpu::{Gpu, GpuError, Job, PassTime, ProgramCache, ProgramKey, Texture, TimingSource, job};
 use crate::plan::{FramePlan, HistoryKey};
 use crate::scene::Frame;
 
@@ -32,6 +32,12 @@ use uniforms::Eye;
 use weather::WeatherMap;
 
 pub use output::{Counts, LinearImage};
+
+/// Every program that a frame of this plan may ask for, bakes and the clear sky included.
+pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
+    let sky = pass::sky::programs().into_iter();
+    sky.chain(bakes::programs(plan)).chain(passes::programs(plan, true)).collect()
+}
 
 /// Why a picture could not be made.
 #[derive(Debug, thiserror::Error)]

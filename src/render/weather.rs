@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use super::RenderError;
 use super::context::{Bound, Context, Extent};
 use super::uniforms::other::{BlendUniforms, MapUniforms};
-use crate::export::map::read_map_image;
-use crate::export::pattern::FramePattern;
+use crate::images::map::read_map_image;
+use crate::images::pattern::FramePattern;
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
 use crate::scene::{MapLayer, MapSource, Weather};
 

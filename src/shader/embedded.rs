@@ -52,6 +52,8 @@ files! {
     "pass/tonemap.wgsl",
     "pass/weather_blend.wgsl",
     "pass/weather_map.wgsl",
+    "test/eval_density.wgsl",
+    "test/eval_field.wgsl",
     "test/eval_io.wgsl",
     "test/eval_math.wgsl",
     "test/eval_noise.wgsl",

@@ -1,36 +1,29 @@
-//! What the GPU tests share: the software device, and a runner for `shaders/test/eval_*.wgsl`.
+//! What the GPU tests share: the software device, clouds of their own for the march, and a runner for `shaders/test/eval_*.wgsl`.
+
+pub(crate) mod field;
+pub(crate) mod sky;
+pub(crate) mod slab;
 
 use std::collections::BTreeSet;
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::OnceLock;
 
 use glam::{DVec3, UVec3, Vec3};
+use nephoscope::gpu::{Gpu, ProgramCache};
 use nephoscope::reference::random::{pcg3d, unit_from_bits};
+use nephoscope::render::shaders::TABLE;
 use nephoscope::shader::{compose, validate};
 use wgpu::util::DeviceExt as _;
 
-/// The device that the tests run on.
-pub(crate) struct TestGpu {
-    pub(crate) device: wgpu::Device,
-    pub(crate) queue: wgpu::Queue,
+/// The software device, opened once. Fails loudly where llvmpipe is missing: a skipped test proves nothing.
+pub(crate) fn gpu() -> &'static Gpu {
+    static GPU: OnceLock<Gpu> = OnceLock::new();
+    GPU.get_or_init(|| Gpu::software().expect("llvmpipe is installed (mesa-vulkan-drivers)"))
 }
 
-/// The software device, opened once. Fails loudly where llvmpipe is missing: a skipped test proves nothing.
-pub(crate) fn gpu() -> &'static TestGpu {
-    static GPU: OnceLock<TestGpu> = OnceLock::new();
-    GPU.get_or_init(|| {
-        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-        descriptor.backends = wgpu::Backends::VULKAN;
-        let instance = wgpu::Instance::new(descriptor);
-        let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
-        let is_llvmpipe = |adapter: &wgpu::Adapter| {
-            let info = adapter.get_info();
-            info.device_type == wgpu::DeviceType::Cpu && info.name.contains("llvmpipe")
-        };
-        let adapter = adapters.into_iter().find(is_llvmpipe).expect("llvmpipe is missing: install mesa-vulkan-drivers");
-        let request = adapter.request_device(&wgpu::DeviceDescriptor::default());
-        let (device, queue) = pollster::block_on(request).expect("llvmpipe opens with default limits");
-        TestGpu { device, queue }
-    })
+/// The programs of tests that run a pass by itself, compiled once for all of them.
+pub(crate) fn programs() -> &'static ProgramCache {
+    static PROGRAMS: OnceLock<ProgramCache> = OnceLock::new();
+    PROGRAMS.get_or_init(|| ProgramCache::new(gpu(), TABLE))
 }
 
 /// One evaluation: four vectors of raw bits, as `Case` in `shaders/test/eval_io.wgsl`.
@@ -48,11 +41,13 @@ pub(crate) fn bits4(v: [f32; 4]) -> [u32; 4] {
 
 /// Runs `entry_point` of `shaders/test/eval_<file>.wgsl` over the cases; answers with raw bits.
 pub(crate) fn eval_bits(file: &str, entry_point: &str, cases: &[Case]) -> Vec<[u32; 4]> {
-    // One at a time: two cores are shared, and a mapped wait would poll for the others.
-    static TURN: Mutex<()> = Mutex::new(());
-    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-    let TestGpu { device, queue } = gpu();
-    let source = compose(&format!("test/eval_{file}.wgsl"), &BTreeSet::new(), &[], &[]).expect("the shader composes");
+    eval_with(file, entry_point, cases, &[])
+}
+
+/// As [`eval_bits`]; `more`, if there is any, is the storage buffer at binding 2.
+pub(crate) fn eval_with(file: &str, entry_point: &str, cases: &[Case], more: &[u8]) -> Vec<[u32; 4]> {
+    let Gpu { device, queue, .. } = gpu();
+    let source = compose(&format!("test/eval_{file}.wgsl"), &BTreeSet::new(), TABLE.flags, TABLE.structs).expect("the shader composes");
     if let Err(error) = validate(&source) {
         panic!("{error}");
     }
@@ -71,20 +66,27 @@ pub(crate) fn eval_bits(file: &str, entry_point: &str, cases: &[Case]) -> Vec<[u
         contents: bytemuck::cast_slice(cases),
         usage: wgpu::BufferUsages::STORAGE,
     });
+    let more = device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+        label: Some("more"),
+        contents: more,
+        usage: wgpu::BufferUsages::STORAGE,
+    });
     let size = (cases.len() * size_of::<[u32; 4]>()) as u64;
     let buffer = |label, usage| {
         device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
     };
     let output = buffer("results", wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let readback = buffer("readback", wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
-    let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("eval"),
-        layout: &pipeline.get_bind_group_layout(0),
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
-        ],
-    });
+    let mut entries = vec![
+        wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
+        wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+    ];
+    if more.size() > 0 {
+        entries.push(wgpu::BindGroupEntry { binding: 2, resource: more.as_entire_binding() });
+    }
+    let layout = pipeline.get_bind_group_layout(0);
+    let descriptor = wgpu::BindGroupDescriptor { label: Some("eval"), layout: &layout, entries: &entries };
+    let bindings = device.create_bind_group(&descriptor);
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());

@@ -1,18 +1,106 @@
-//! Every embedded shader composes and is valid WGSL.
+//! Every shader in every form that any sky can ask for composes and is valid; nothing here needs a device.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use nephoscope::gpu::ProgramKey;
+use nephoscope::plan::FramePlan;
+use nephoscope::render::{programs, shaders::TABLE};
+use nephoscope::scene::builtin::BUILTINS;
+use nephoscope::scene::random::randomise;
+use nephoscope::scene::{DensityModel, DomainKind, Frame, Output, Quality, Scene, ToneMap, UpdateFraction};
 use nephoscope::shader::{FILES, compose, validate};
 
 #[test]
 fn every_function_file_and_test_shader_is_valid() {
     let mut failures = Vec::new();
     for (path, _) in FILES.iter().filter(|(path, _)| !path.starts_with("pass/")) {
-        let known: Vec<&str> = Vec::new();
-        let result = compose(path, &BTreeSet::new(), &known, &[]).and_then(|source| validate(&source));
+        let result =
+            compose(path, &BTreeSet::new(), TABLE.flags, TABLE.structs).and_then(|source| validate(&source));
         if let Err(error) = result {
             failures.push(error.to_string());
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+type Change = fn(&mut Scene, &mut Quality);
+
+/// Everything the plan may decide, switched one at a time on every preset.
+const CHANGES: [Change; 22] = [
+    |_, _| {},
+    |scene, _| scene.weather.coverage = 0.0,
+    |scene, _| scene.layers.iter_mut().for_each(|layer| layer.model = DensityModel::Profile),
+    |scene, _| scene.layers.iter_mut().for_each(|layer| layer.model = DensityModel::Thesis),
+    |scene, _| scene.layers.iter_mut().for_each(|layer| layer.model = DensityModel::Uniform),
+    |scene, _| scene.layers.push(scene.layers[0].clone()),
+    |scene, _| scene.layers.iter_mut().for_each(|layer| layer.detail_strength = 0.0),
+    |scene, _| scene.layers.iter_mut().for_each(|layer| layer.curl_m = 0.0),
+    |scene, _| (scene.weather.coverage_changes, scene.weather.coverage_change_to) = (true, 0.123),
+    |scene, _| scene.air.aerial_perspective = false,
+    |scene, _| scene.ground.visible = false,
+    |scene, _| (scene.ground.hills_m, scene.ground.mountains_m) = (0.0, 0.0),
+    |scene, _| scene.ground.cloud_shadows = 0.0,
+    |scene, _| (scene.sun.elevation_deg, scene.sunshafts.strength) = (-40.0, 1.0),
+    |scene, _| (scene.sun.elevation_deg, scene.moon.enabled) = (-40.0, false),
+    |scene, _| (scene.sun.elevation_deg, scene.sunshafts.strength, scene.camera.pitch_deg) = (5.0, 1.0, 80.0),
+    |scene, _| (scene.domain.kind, scene.sunshafts.strength) = (DomainKind::Flat, 1.0),
+    |scene, _| scene.domain.kind = DomainKind::Box,
+    |scene, _| scene.display.tone_map = ToneMap::Neutral,
+    |scene, _| scene.display.tone_map = ToneMap::Linear,
+    |_, quality| quality.octaves = 0,
+    |_, quality| quality.update = UpdateFraction::Full,
+];
+
+/// The programs of all presets with every change, of random scenes, and those that no plan lists.
+fn reachable() -> BTreeMap<String, ProgramKey> {
+    let mut scenes: Vec<(Scene, Quality)> = Vec::new();
+    for builtin in BUILTINS {
+        let scene = builtin.preset().unwrap_or_else(|error| panic!("{error}")).scene;
+        for change in CHANGES {
+            let (mut scene, mut quality) = (scene.clone(), Quality::default());
+            change(&mut scene, &mut quality);
+            scenes.push((scene, quality));
+        }
+    }
+    for seed in 0..150 {
+        let (mut scene, mut quality) = (Scene::default(), Quality::default());
+        randomise(&mut scene, seed);
+        randomise(&mut quality, seed);
+        scenes.push((scene, quality));
+    }
+    let mut keys = vec![ProgramKey::plain("pass/weather_blend.wgsl").with_flags(["BELOW"])];
+    for (scene, quality) in &scenes {
+        for output in [Output::Display, Output::Linear, Output::CloudsAlone] {
+            keys.extend(programs(&FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output })));
+        }
+    }
+    let counted = keys.iter().filter(|key| key.file == "pass/march.wgsl").map(|key| key.clone().with_flags(["COUNT"]));
+    let counted: Vec<ProgramKey> = counted.collect();
+    // What is overridden is not composed: one of each text is enough.
+    let text = |key: ProgramKey| (ProgramKey { constants: Vec::new(), ..key.clone() }.to_string(), key);
+    keys.into_iter().chain(counted).map(text).collect()
+}
+
+#[test]
+fn every_pass_in_every_form_that_a_sky_can_ask_for_is_valid() {
+    let keys = reachable();
+    let failures: Vec<String> =
+        keys.iter().filter_map(|(name, key)| Some(format!("{name}: {}", TABLE.compose(key).err()?))).collect();
+    assert!(failures.is_empty(), "{} of {}:\n{}", failures.len(), keys.len(), failures.join("\n"));
+    assert!(keys.len() > 100, "only {} forms were found", keys.len());
+    let is_function_file = |path: &str| !keys.values().any(|key| key.file == path);
+    let never: Vec<&str> = FILES
+        .iter()
+        .filter(|(path, text)| path.starts_with("pass/") && text.contains("@compute") && is_function_file(path))
+        .map(|(path, _)| *path)
+        .collect();
+    assert!(never.is_empty(), "no sky asks for {never:?}");
+}
+
+#[test]
+fn no_flag_is_known_that_no_shader_asks_for() {
+    for flag in TABLE.flags {
+        let asked = format!("#if {flag}");
+        assert!(FILES.iter().any(|(_, text)| text.lines().any(|line| line.trim() == asked)), "{flag} is never asked for");
+    }
 }

@@ -8,8 +8,7 @@ use ::exr::meta::MetaData;
 use ::exr::prelude as exrs;
 use ::exr::prelude::{ReadChannels as _, ReadLayers as _, ReadSpecificChannel as _};
 
-use super::exr::{Crop, FloatImage, find_non_finite, position};
-use super::{ExportError, sha256_hex};
+use super::{Crop, FloatImage, ImageError, find_non_finite, position, sha256_hex};
 
 /// The most bytes a map file may have. A 4096² RGBA map of uncompressed floats has a quarter of that.
 pub const MAX_MAP_FILE_BYTES: u64 = 1 << 30;
@@ -17,9 +16,9 @@ pub const MAX_MAP_FILE_BYTES: u64 = 1 << 30;
 /// The most pixels an EXR may have, so that a damaged header cannot claim all memory. A 16K panorama has half.
 const MAX_EXR_PIXELS: u64 = 1 << 28;
 /// First bytes of every PNG file.
-pub(super) const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
+pub(crate) const PNG_MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// First bytes of every OpenEXR file.
-pub(super) const EXR_MAGIC: &[u8] = &::exr::meta::magic_number::BYTES;
+pub(crate) const EXR_MAGIC: &[u8] = &::exr::meta::magic_number::BYTES;
 
 /// A square map, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +40,7 @@ pub struct MapImage {
 /// # Errors
 /// If the file is missing, unreadable, of another format, truncated, damaged, not square, too large, or holds a value
 /// that is not finite.
-pub fn read_map_image(path: &Path, max_side: u32) -> Result<MapImage, ExportError> {
+pub fn read_map_image(path: &Path, max_side: u32) -> Result<MapImage, ImageError> {
     decode_map_image(path, &read_limited(path)?, max_side)
 }
 
@@ -49,13 +48,13 @@ pub fn read_map_image(path: &Path, max_side: u32) -> Result<MapImage, ExportErro
 ///
 /// # Errors
 /// As [`read_map_image`], except for those of the file system.
-pub fn decode_map_image(path: &Path, bytes: &[u8], max_side: u32) -> Result<MapImage, ExportError> {
+pub fn decode_map_image(path: &Path, bytes: &[u8], max_side: u32) -> Result<MapImage, ImageError> {
     let check_size = |width: u32, height: u32| {
         let path = path.to_owned();
         if width != height {
-            Err(ExportError::NotSquare { path, width, height })
+            Err(ImageError::NotSquare { path, width, height })
         } else if width > max_side {
-            Err(ExportError::TooLarge { path, width, height, limit: max_side })
+            Err(ImageError::TooLarge { path, width, height, limit: max_side })
         } else {
             Ok(())
         }
@@ -75,26 +74,26 @@ pub fn decode_map_image(path: &Path, bytes: &[u8], max_side: u32) -> Result<MapI
 /// # Errors
 /// If the file is missing, unreadable, no EXR, truncated, damaged, has no colour channels, or holds a value that is
 /// not finite.
-pub fn read_exr(path: &Path) -> Result<FloatImage, ExportError> {
-    let bytes = fs::read(path).map_err(|error| ExportError::reading(path, error))?;
+pub fn read_exr(path: &Path) -> Result<FloatImage, ImageError> {
+    let bytes = fs::read(path).map_err(|error| ImageError::reading(path, error))?;
     let image = decode_exr(path, &bytes, |_, _| Ok(()))?;
     check_finite(path, image.width, &image.rgba, image.depth.as_deref())?;
     Ok(image)
 }
 
-fn read_limited(path: &Path) -> Result<Vec<u8>, ExportError> {
-    let reading = |error| ExportError::reading(path, error);
+fn read_limited(path: &Path) -> Result<Vec<u8>, ImageError> {
+    let reading = |error| ImageError::reading(path, error);
     let bytes = fs::metadata(path).map_err(reading)?.len();
     if bytes > MAX_MAP_FILE_BYTES {
-        return Err(ExportError::TooManyBytes { path: path.to_owned(), bytes, limit: MAX_MAP_FILE_BYTES });
+        return Err(ImageError::TooManyBytes { path: path.to_owned(), bytes, limit: MAX_MAP_FILE_BYTES });
     }
     fs::read(path).map_err(reading)
 }
 
-fn check_finite(path: &Path, width: u32, rgba: &[[f32; 4]], depth: Option<&[f32]>) -> Result<(), ExportError> {
+fn check_finite(path: &Path, width: u32, rgba: &[[f32; 4]], depth: Option<&[f32]>) -> Result<(), ImageError> {
     let Some((count, first, channel)) = find_non_finite(rgba, depth) else { return Ok(()) };
     let (x, y) = position(first, width);
-    Err(ExportError::NonFiniteInput { path: path.to_owned(), count, x, y, channel })
+    Err(ImageError::NonFiniteInput { path: path.to_owned(), count, x, y, channel })
 }
 
 /// Width, height and pixels.
@@ -103,11 +102,11 @@ type Pixels = (u32, u32, Vec<[f32; 4]>);
 fn decode_png(
     path: &Path,
     bytes: &[u8],
-    check_size: impl Fn(u32, u32) -> Result<(), ExportError>,
-) -> Result<Pixels, ExportError> {
+    check_size: impl Fn(u32, u32) -> Result<(), ImageError>,
+) -> Result<Pixels, ImageError> {
     let failed = |error| match error {
-        image::ImageError::IoError(cause) => ExportError::reading(path, cause),
-        other => ExportError::Corrupt { path: path.to_owned(), reason: other.to_string() },
+        image::ImageError::IoError(cause) => ImageError::reading(path, cause),
+        other => ImageError::Corrupt { path: path.to_owned(), reason: other.to_string() },
     };
     // The size comes first: a small file can promise a picture larger than the memory.
     let reader = || image::ImageReader::with_format(Cursor::new(bytes), image::ImageFormat::Png);
@@ -120,14 +119,14 @@ fn decode_png(
 }
 
 /// What a reader of EXR headers found wrong, told apart for the user.
-pub(super) fn exr_failure(path: &Path, error: exrs::Error) -> ExportError {
+pub(crate) fn exr_failure(path: &Path, error: exrs::Error) -> ImageError {
     match error {
-        exrs::Error::Io(cause) => ExportError::reading(path, cause),
+        exrs::Error::Io(cause) => ImageError::reading(path, cause),
         // The crate turns an unexpected end of file into this text.
         exrs::Error::Invalid(reason) if reason.contains("missing bytes") => {
-            ExportError::Truncated { path: path.to_owned() }
+            ImageError::Truncated { path: path.to_owned() }
         }
-        other => ExportError::Corrupt { path: path.to_owned(), reason: other.to_string() },
+        other => ImageError::Corrupt { path: path.to_owned(), reason: other.to_string() },
     }
 }
 
@@ -141,13 +140,13 @@ struct Collected {
 fn decode_exr(
     path: &Path,
     bytes: &[u8],
-    check_size: impl Fn(u32, u32) -> Result<(), ExportError>,
-) -> Result<FloatImage, ExportError> {
+    check_size: impl Fn(u32, u32) -> Result<(), ImageError>,
+) -> Result<FloatImage, ImageError> {
     if !bytes.starts_with(EXR_MAGIC) {
-        return Err(ExportError::WrongFormat { path: path.to_owned() });
+        return Err(ImageError::WrongFormat { path: path.to_owned() });
     }
     let failed = |error| exr_failure(path, error);
-    let corrupt = |reason: &str| ExportError::Corrupt { path: path.to_owned(), reason: reason.to_owned() };
+    let corrupt = |reason: &str| ImageError::Corrupt { path: path.to_owned(), reason: reason.to_owned() };
     let metadata = MetaData::read_from_buffered(bytes, false).map_err(failed)?;
     let header = metadata.headers.first().ok_or_else(|| corrupt("it has no image part"))?;
     if header.deep {
@@ -221,8 +220,8 @@ fn crop_of(header: &::exr::meta::header::Header) -> Option<Crop> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::exr::{ExrDepth, ExrMetadata, ExrOptions, write_exr};
-    use super::super::png::{PngPixels, write_png};
+    use crate::export::exr::{ExrDepth, ExrMetadata, ExrOptions, write_exr};
+    use crate::export::png::{PngPixels, write_png};
     use super::*;
     use std::path::PathBuf;
 
@@ -282,11 +281,11 @@ mod tests {
     fn maps_of_the_wrong_size_are_refused_before_decoding() {
         let (_folder, path) = in_folder("map.png");
         write_png(&path, [2, 1], PngPixels::Rgb8(&[0; 6]), &[]).unwrap();
-        assert!(matches!(read_map_image(&path, 4), Err(ExportError::NotSquare { width: 2, height: 1, .. })));
+        assert!(matches!(read_map_image(&path, 4), Err(ImageError::NotSquare { width: 2, height: 1, .. })));
         let (_folder, path) = in_folder("map.exr");
         write_square_exr(&path);
         let error = read_map_image(&path, 3).unwrap_err();
-        assert!(matches!(error, ExportError::TooLarge { limit: 3, .. }), "{error:?}");
+        assert!(matches!(error, ImageError::TooLarge { limit: 3, .. }), "{error:?}");
         assert!(error.to_string().contains("3 x 3"), "the limit belongs in the message: {error}");
 
         // The header alone promises 60000 x 60000 pixels, 14 GB; only the limit stands between that and the memory.
@@ -295,7 +294,7 @@ mod tests {
         huge.extend(b"\0\0\0\0IDAT");
         huge.extend(crc32(b"IDAT").to_be_bytes());
         let result = decode_map_image(&path, &huge, 8192);
-        assert!(matches!(result, Err(ExportError::TooLarge { width: 60000, .. })), "{result:?}");
+        assert!(matches!(result, Err(ImageError::TooLarge { width: 60000, .. })), "{result:?}");
     }
 
     /// CRC-32 as PNG uses it (ISO 3309).
@@ -308,11 +307,11 @@ mod tests {
     #[test]
     fn missing_and_foreign_files_are_told_apart() {
         let (folder, path) = in_folder("map.png");
-        assert!(matches!(read_map_image(&path, 4), Err(ExportError::FileMissing { .. })));
-        assert!(matches!(read_map_image(folder.path(), 4), Err(ExportError::NotReadable { .. })));
+        assert!(matches!(read_map_image(&path, 4), Err(ImageError::FileMissing { .. })));
+        assert!(matches!(read_map_image(folder.path(), 4), Err(ImageError::NotReadable { .. })));
         for contents in [&b""[..], b"GIF89a", b"(name: \"sky\")"] {
             fs::write(&path, contents).unwrap();
-            assert!(matches!(read_map_image(&path, 4), Err(ExportError::WrongFormat { .. })));
+            assert!(matches!(read_map_image(&path, 4), Err(ImageError::WrongFormat { .. })));
         }
     }
 
@@ -330,7 +329,7 @@ mod tests {
                 assert!(decode_map_image(&path, &bytes[..length], 64).is_err(), "{length} bytes of {}", path.display());
             }
             let result = decode_map_image(&path, &bytes[..bytes.len() / 2], 64);
-            assert!(matches!(result, Err(ExportError::Truncated { .. })), "{result:?}");
+            assert!(matches!(result, Err(ImageError::Truncated { .. })), "{result:?}");
         }
     }
 
@@ -357,7 +356,7 @@ mod tests {
         exrs::WritableImage::write(&exrs::Image::from_channels((2, 2), channels)).to_file(&path).unwrap();
         let result = read_map_image(&path, 4);
         assert!(
-            matches!(result, Err(ExportError::NonFiniteInput { count: 1, x: 1, y: 1, channel: 'R', .. })),
+            matches!(result, Err(ImageError::NonFiniteInput { count: 1, x: 1, y: 1, channel: 'R', .. })),
             "{result:?}"
         );
     }
