@@ -19,7 +19,11 @@ ended_on_exit=()
 removed_on_exit=()
 clean_up() {
     local pid
-    for pid in "${ended_on_exit[@]}"; do kill "$pid" 2>/dev/null && wait "$pid" 2>/dev/null; done
+    set +e
+    # The bash of macOS takes an empty list for an unset one.
+    ((${#ended_on_exit[@]} == 0)) || for pid in "${ended_on_exit[@]}"; do
+        kill "$pid" 2>/dev/null && wait "$pid" 2>/dev/null
+    done
     ((${#removed_on_exit[@]} == 0)) || rm -rf -- "${removed_on_exit[@]}"
 }
 trap clean_up EXIT
@@ -37,7 +41,7 @@ test_packages=(xvfb xdotool openexr openimageio-tools)
 is_installed() { [[ $(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null) == installed ]]; }
 
 install_missing() {
-    local package missing=() root=()
+    local package missing=() root=
     command -v dpkg-query >/dev/null && command -v apt-get >/dev/null || return 0
     for package in "$@"; do is_installed "$package" || missing+=("$package"); done
     ((${#missing[@]})) || return 0
@@ -51,11 +55,11 @@ install_missing() {
             say "ask an administrator for: apt-get install ${missing[*]}"
             return 0
         fi
-        root=(sudo)
+        root=sudo
     fi
     say "installing ${missing[*]}"
-    "${root[@]}" apt-get update -qq >&2 || say "the package lists could not be refreshed; trying with the old ones"
-    "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    $root apt-get update -qq >&2 || say "the package lists could not be refreshed; trying with the old ones"
+    $root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
         "${missing[@]}" >&2 </dev/null || say "not everything could be installed: ${missing[*]}"
 }
 
@@ -65,7 +69,8 @@ case ${1:-run} in
     *) fail "setup.sh takes run or test" ;;
 esac
 
-command -v cargo >/dev/null || [[ ! -f $HOME/.cargo/env ]] || . "$HOME/.cargo/env"
+command -v cc >/dev/null || install_missing gcc libc6-dev
+command -v cargo >/dev/null || [[ ! -f ${HOME:-}/.cargo/env ]] || . "$HOME/.cargo/env"
 command -v cargo >/dev/null || fail "cargo is missing: install Rust $(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml) or later"
 
 if [[ -z ${XDG_RUNTIME_DIR:-} || ! -d ${XDG_RUNTIME_DIR:-} ]]; then

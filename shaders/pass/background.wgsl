@@ -63,17 +63,17 @@ fn stars(dir: vec3f) -> vec3f {
 #endif
 
 #if GROUND
-fn ground_height(p: vec2f) -> f32 {
+fn ground_height(p: vec2f, distance_m: f32) -> f32 {
 #if TERRAIN
-  return terrain_height(p, linear_repeat);
+  return terrain_height(p, distance_m, linear_repeat);
 #else
   return 0.0;
 #endif
 }
 
 #if TERRAIN
-fn clearance_at(p: vec3f) -> f32 {
-  return altitude_at(p, ground.planet_radius_m) - ground_height(p.xz);
+fn clearance_at(p: vec3f, distance_m: f32) -> f32 {
+  return altitude_at(p, ground.planet_radius_m) - ground_height(p.xz, distance_m);
 }
 
 // Distance to the relief between start and end, or -1: steps by clearance, then halves the last one.
@@ -81,21 +81,21 @@ fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
   var t = start;
   var before = start;
   var is_hit = false;
-  for (var i = 0u; i < 110u; i++) {
+  for (var i = 0u; i < 56u; i++) {
     if (t >= end) {
       break;
     }
-    let clearance = clearance_at(origin + dir * t);
+    let clearance = clearance_at(origin + dir * t, t);
     if (clearance < 0.001 * t) {
       is_hit = true;
       break;
     }
     before = t;
-    t += max(clearance * 0.6, 10.0 + 0.045 * t);
+    t += max(clearance * 0.7, 40.0 + 0.08 * t);
   }
-  for (var k = 0u; k < 6u; k++) {
+  for (var k = 0u; k < 7u && is_hit; k++) {
     let middle = 0.5 * (before + t);
-    let is_above = clearance_at(origin + dir * middle) > 0.0;
+    let is_above = clearance_at(origin + dir * middle, middle) > 0.0;
     before = select(before, middle, is_above);
     t = select(middle, t, is_above);
   }
@@ -113,7 +113,13 @@ fn ground_hit(origin: vec3f, dir: vec3f) -> f32 {
   let is_above = altitude_at(origin, ground.planet_radius_m) > ground.highest_m;
   let start = select(0.0, max(ceiling.x, 0.0), is_above);
   let end = min(select(max(ceiling.y, 0.0), sea_distance, is_down), ground.reach_m);
-  let relief = relief_hit(origin, dir, start, select(-1.0, end, ceiling.y > 0.0));
+  // A ray that stays over the plain, or until it leaves it, meets no relief.
+  let flat = max(length(dir.xz), 1e-4);
+  let plain_until = max(PLAIN_M - length(ground.plain_at), 0.0) / flat;
+  var relief = -1.0;
+  if (ceiling.y > 0.0 && !(is_down && sea_distance < plain_until)) {
+    relief = relief_hit(origin, dir, max(start, plain_until), end);
+  }
   return select(sea_distance, relief, relief >= 0.0);
 #else
   return sea_distance;
@@ -123,9 +129,10 @@ fn ground_hit(origin: vec3f, dir: vec3f) -> f32 {
 fn ground_normal(p: vec3f, distance_m: f32) -> vec3f {
 #if TERRAIN
   let e = max(20.0, distance_m * 0.004);
-  let east = ground_height(p.xz + vec2f(e, 0.0)) - ground_height(p.xz - vec2f(e, 0.0));
-  let south = ground_height(p.xz + vec2f(0.0, e)) - ground_height(p.xz - vec2f(0.0, e));
-  return normalize(vec3f(-east, 2.0 * e, -south));
+  let here = ground_height(p.xz, distance_m);
+  let east = ground_height(p.xz + vec2f(e, 0.0), distance_m) - here;
+  let south = ground_height(p.xz + vec2f(0.0, e), distance_m) - here;
+  return normalize(vec3f(-east, e, -south));
 #else
   return up_at(p, ground.planet_radius_m);
 #endif
@@ -140,7 +147,7 @@ fn ground_albedo(p: vec3f, normal: vec3f, distance_m: f32) -> vec3f {
   let fade = exp(-distance_m / 25000.0);
   albedo *= 0.45 + 1.1 * patches + (fields - 0.5) * 0.9 * fade;
   albedo = mix(albedo, albedo.grr * vec3f(0.95, 0.85, 0.6), clamp(fields * 2.0 - 0.9, 0.0, 0.6));
-  let height = ground_height(p.xz);
+  let height = max(altitude_at(p, ground.planet_radius_m), 0.0);
   let rocky = smoothstep(0.90, 0.72, normal.y) + smoothstep(0.35, 0.8, height / max(ground.mountains_m, 1.0));
   albedo = mix(albedo, ground.rock, clamp(rocky, 0.0, 1.0) * step(1.0, ground.mountains_m));
 #endif
@@ -186,7 +193,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   var eye = view.camera.eye;
 #if TERRAIN
   // An eye inside a hill sees from above it.
-  eye.y = max(eye.y, ground_height(vec2f(0.0)) + 2.0);
+  eye.y = max(eye.y, ground_height(vec2f(0.0), 0.0) + 2.0);
 #endif
   let hit = ground_hit(eye, dir);
   var light: vec3f;

@@ -5,14 +5,29 @@
 #if TERRAIN
 @group(1) @binding(11) var terrain_map: texture_2d<f32>;
 
-// Height above sea level: ranges, hills between them, and the same again, small, so that near slopes are not smooth.
-// The world's origin lies in a plain, so that a camera there sees.
-fn terrain_height(p: vec2f, smp: sampler) -> f32 {
-  let broad = textureSampleLevel(terrain_map, smp, p * ground.tile_from_world.z + ground.tile_from_world.xy, 0.0);
-  let near_uv = p * ground.tile_from_world.z * 7.0 + ground.tile_from_world.xy * 7.0;
-  let near = textureSampleLevel(terrain_map, smp, near_uv, 0.0);
+// The world's origin lies in a plain, so that a camera there sees: no relief within the first radius, all of it from
+// the second on.
+const PLAIN_M: f32 = 800.0;
+const RELIEF_FROM_M: f32 = 7000.0;
+// Distance to which the small copy of the relief is read.
+const FINE_RELIEF_M: f32 = 5000.0;
+
+// Height above sea level, seen from a distance: ranges, hills between them, and near the eye the same again, small, so
+// that near slopes are not smooth.
+fn terrain_height(p: vec2f, distance_m: f32, smp: sampler) -> f32 {
+  let out = length(p - ground.plain_at);
+  if (out < PLAIN_M) {
+    return 0.0;
+  }
+  let uv = p * ground.tile_from_world.z + ground.tile_from_world.xy;
+  let broad = textureSampleLevel(terrain_map, smp, uv, 0.0);
   let ranges = broad.x * ground.mountains_m;
-  let relief = ranges + (broad.y + 0.12 * near.y) * ground.hills_m + 0.10 * near.x * ranges;
-  return relief * smoothstep(800.0, 7000.0, length(p - ground.plain_at));
+  var relief = ranges + broad.y * ground.hills_m;
+  if (distance_m < FINE_RELIEF_M) {
+    let fine = textureSampleLevel(terrain_map, smp, uv * 7.0, 0.0);
+    let fade = 1.0 - distance_m / FINE_RELIEF_M;
+    relief += fade * (0.12 * (fine.y - 0.5) * ground.hills_m + 0.10 * fine.x * ranges);
+  }
+  return relief * smoothstep(PLAIN_M, RELIEF_FROM_M, out);
 }
 #endif

@@ -1,7 +1,7 @@
 //! The editor: a window on a [`Document`], its panels, and the renderer behind the picture.
 //!
 //! Panels return [`action::Action`]s; [`Session`] carries them out on the document and returns what concerns windows
-//! and threads; [`window::App`] does that, and keeps the picture and the panels going beside each other.
+//! and threads; `window::App` does that, and keeps the picture and the panels going beside each other.
 
 pub mod action;
 pub mod camera_control;

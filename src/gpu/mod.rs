@@ -10,9 +10,11 @@ pub mod job;
 pub mod program;
 pub mod readback;
 pub mod texture;
+mod unchecked;
 
 pub use device::{AdapterChoice, Gpu};
 pub use errors::GpuError;
 pub use job::{Job, PassTime, TimingSource};
 pub use program::{Program, ProgramCache, ProgramKey, ShaderTable};
 pub use texture::Texture;
+pub use unchecked::ShaderChecks;

@@ -6,7 +6,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::sync::{Arc, Mutex};
 
-use super::{Gpu, GpuError, Job};
+use super::{Gpu, GpuError, Job, unchecked};
 use crate::shader::{self, ShaderSource};
 
 /// One compiled form of one shader file.
@@ -119,10 +119,11 @@ impl Program {
             key.constants.iter().map(|(name, value)| (*name, f64::from(*value))).collect();
         let pipeline = gpu
             .checked(|| {
-                let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                let descriptor = wgpu::ShaderModuleDescriptor {
                     label: Some(&label),
                     source: wgpu::ShaderSource::Wgsl(source.code.into()),
-                });
+                };
+                let module = unchecked::shader_module(&gpu.device, descriptor);
                 gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some(&label),
                     layout: None,

@@ -199,7 +199,7 @@ fn sampler(gpu: &Gpu, label: &str, address: wgpu::AddressMode) -> wgpu::Sampler 
         address_mode_w: address,
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Nearest,
         ..Default::default()
     })
 }

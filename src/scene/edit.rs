@@ -463,7 +463,11 @@ mod tests {
             ("layers.0.base_m", "-5", "layers.0.base_m = -5 m is outside 0 m ..= 15000 m"),
             ("layers.0.base_m", "NaN", "layers.0.base_m = NaN m is not a finite number; allowed are 0 m ..= 15000 m"),
             ("layers.0.base_m", "high", "layers.0.base_m = high cannot be read; expected a number"),
-            ("layers.0.model", "thesis", "layers.0.model = thesis cannot be read; expected one of Profile, Thesis"),
+            (
+                "layers.0.model",
+                "thesis",
+                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform",
+            ),
             ("layers.3.base_m", "1", "layers: the list has 1 item(s), so the index may be at most 1"),
             (
                 "layers.0.phase",

@@ -199,7 +199,7 @@ pub(super) fn set_file(params: &mut dyn FnMut(&mut dyn Visitor), key: &str, path
     setter.found
 }
 
-/// As [`set_file`], for anything written with `params!`.
+/// As `set_file`, for anything written with `params!`.
 pub fn set_file_in<P: Params>(params: &mut P, key: &str, path: &str) -> bool {
     set_file(&mut |visitor| params.visit(visitor), key, path)
 }

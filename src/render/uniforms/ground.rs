@@ -43,7 +43,7 @@ pub(crate) fn ground_uniforms(scene: &Scene, lighting: &Lighting, eye: &Eye, sha
         plain_at: Vec2::new(-eye.position.x as f32, -eye.position.z as f32),
         mean_shadow: 1.0 - 0.55 * scene.weather.coverage,
         shadow_strength: ground.cloud_shadows,
-        reach_m: 90_000.0,
+        reach_m: 70_000.0,
         pad0: 0.0,
         pad1: 0.0,
         pad2: 0.0,

@@ -1,0 +1,47 @@
+//! The one place that turns off a check which naga adds to shaders.
+//!
+//! naga adds a counter to every loop, so that even an endless one ends. It keeps drivers from unrolling loops, and with
+//! that from seeing that indices are constant. The loops of this program's shaders all end by a count of their own, so
+//! they are compiled without; checks of array bounds stay. `NEPHOSCOPE_SHADER_CHECKS=all` turns all checks on.
+
+/// Which checks naga adds to shaders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ShaderChecks {
+    /// Bounds of arrays and ends of loops.
+    All,
+    /// Bounds of arrays alone.
+    Bounds,
+}
+
+impl ShaderChecks {
+    /// The checks this process compiles shaders with.
+    pub fn in_use() -> Self {
+        match std::env::var("NEPHOSCOPE_SHADER_CHECKS").as_deref() {
+            Ok("all") => Self::All,
+            _ => Self::Bounds,
+        }
+    }
+
+    /// The words printed beside measurements.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::All => "bounds and loops checked",
+            Self::Bounds => "bounds checked, loops trusted",
+        }
+    }
+}
+
+/// A shader module with the checks in use.
+#[allow(unsafe_code, reason = "wgpu marks the choice of runtime checks unsafe; every loop of our shaders is counted")]
+pub(super) fn shader_module(
+    device: &wgpu::Device,
+    descriptor: wgpu::ShaderModuleDescriptor<'_>,
+) -> wgpu::ShaderModule {
+    let checks = wgpu::ShaderRuntimeChecks {
+        force_loop_bounding: ShaderChecks::in_use() == ShaderChecks::All,
+        ..wgpu::ShaderRuntimeChecks::checked()
+    };
+    // SAFETY: without loop bounding a shader must not loop for ever. All loops of the embedded shaders run to a counted
+    // end; only somebody who edits them on disk (NEPHOSCOPE_SHADERS) can write one that does not.
+    unsafe { device.create_shader_module_trusted(descriptor, checks) }
+}
