@@ -175,6 +175,8 @@ fn leaving_out_what_has_no_strength_changes_nothing() {
         let take = |strength: f32| {
             let (mut scene, mut quality) = (Scene::default(), quick());
             scene.weather.coverage = 0.6;
+            // Shafts need the sun near the picture.
+            (scene.sun.elevation_deg, scene.camera.heading_deg) = (20.0, scene.sun.azimuth_deg);
             change(&mut scene, &mut quality, strength);
             let plan = FramePlan::new(&Frame {
                 scene: &scene,
