@@ -50,14 +50,17 @@ fn eroded(field: f32, amount: f32) -> f32 {
   return field - amount * (1.0 - clamp(field, 0.0, 1.0));
 }
 
-// Whether erosion can change anything at this value: 1 and above is solid, 0 and below is clear either way.
-fn near_surface(field: f32) -> bool {
-  return field < 1.0;
+// Steepness of the density over the signed field.
+const STEEPNESS: f32 = 1.7;
+
+// Whether erosion can change the density at this value: where even the strongest leaves full density, it cannot.
+fn near_surface(field: f32, layer: LayerUniforms) -> bool {
+  return eroded(field, layer.detail_strength) * STEEPNESS * layer.sharpness < 1.0;
 }
 
 // Density 0..1. Liquid water grows with height above the base, nearly as its power 2/3 (Brenguier et al. 2000).
 fn profile_density(field: f32, layer: LayerUniforms, h: f32) -> f32 {
-  let solid = clamp(field * 1.7 * layer.sharpness, 0.0, 1.0);
+  let solid = clamp(field * STEEPNESS * layer.sharpness, 0.0, 1.0);
   return solid * mix(0.45, 1.0, clamp(h * 1.2, 0.0, 1.0));
 }
 
@@ -67,5 +70,5 @@ fn profile_bound(greatest_body: f32, layer: LayerUniforms) -> f32 {
   let strength = max(layer.shape_strength, 0.0);
   let lumps = smoothstep(0.04, 0.40, body);
   let field = (1.2 * body - 0.35 + max(strength * (lumps - 0.65), 0.7 * strength * (lumps - 0.65))) * 2.2;
-  return clamp(field * 1.7 * layer.sharpness, 0.0, 1.0);
+  return clamp(field * STEEPNESS * layer.sharpness, 0.0, 1.0);
 }

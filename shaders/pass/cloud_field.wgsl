@@ -115,19 +115,22 @@ fn weather_at(layer: LayerUniforms, p: vec2f, h: f32) -> Weather {
   return weather_from_texel(map_texel(layer, p, h), layer, bias);
 }
 
+// Where the small noise has faded by this much, nobody sees that it was dragged.
+const CURL_FADE: f32 = 0.4;
+
 #if DETAIL
-fn detail_texel(layer: LayerUniforms, p: vec3f, h: f32, level: f32) -> vec4f {
+fn detail_texel(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> vec4f {
   var q = p * layer.detail_from_world.w + layer.detail_from_world.xyz;
 #if CURL
-  if (layer.curl_from_world.w > 0.0) {
+  if (layer.curl_from_world.w > 0.0 && reading.fade < CURL_FADE) {
     count_read();
     let uv = (p.xz + p.y * vec2f(0.37, 0.19)) * layer.curl_from_world.z + layer.curl_from_world.xy;
     let flow = textureSampleLevel(curl_noise, linear_repeat, uv, 0.0).xyz;
-    q += flow * layer.curl_from_world.w * (1.0 - 0.7 * h);
+    q += flow * layer.curl_from_world.w * (1.0 - 0.7 * h) * (1.0 - reading.fade / CURL_FADE);
   }
 #endif
   count_read();
-  return textureSampleLevel(detail_noise, linear_repeat, q, level);
+  return textureSampleLevel(detail_noise, linear_repeat, q, reading.level);
 }
 #endif
 
@@ -145,11 +148,11 @@ fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
     clearness = min(clearness, -2.0 * field);
     return 0.0;
   }
-  if (near_surface(field) && layer.detail_strength > 0.0) {
+  if (near_surface(field, layer) && layer.detail_strength > 0.0) {
     var amount = MEAN_EROSION * layer.detail_strength;
 #if DETAIL
     if (reading.detail) {
-      amount = erosion(detail_texel(layer, p, h, reading.level), layer, h, reading.fade);
+      amount = erosion(detail_texel(layer, p, h, reading), layer, h, reading.fade);
     }
 #endif
     field = eroded(field, amount);
@@ -171,7 +174,7 @@ fn thesis_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   var field = thesis_field(profile, textureSampleLevel(worley_noise, linear_repeat, tile, reading.level), weather, layer);
 #if DETAIL
   if (field > 0.0 && thesis_near_surface(field, layer) && layer.detail_strength > 0.0 && reading.detail) {
-    field = thesis_eroded(field, detail_texel(layer, p, h, reading.level), layer, reading.fade);
+    field = thesis_eroded(field, detail_texel(layer, p, h, reading), layer, reading.fade);
   }
 #endif
   return thesis_density(field, layer);

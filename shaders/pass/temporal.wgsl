@@ -18,8 +18,15 @@
 @group(2) @binding(0) var cloud_out: texture_storage_2d<rgba16float, write>;
 @group(2) @binding(1) var distance_out: texture_storage_2d<r32float, write>;
 
-// The fresh rays around a pixel, blended; stands in wherever there is no history.
-fn upsampled(pixel: vec2u) -> vec4f {
+// The four fresh rays around a pixel: blended, they stand in wherever there is no history, and history of what moved
+// lies within what they show.
+struct Fresh {
+  blend: vec4f,
+  low: vec4f,
+  high: vec4f,
+}
+
+fn fresh_around(pixel: vec2u) -> Fresh {
   let place = (vec2f(pixel) - vec2f(view.update_offset)) / vec2f(view.update_block);
   let corner = vec2i(floor(place));
   let f = place - vec2f(corner);
@@ -28,27 +35,15 @@ fn upsampled(pixel: vec2u) -> vec4f {
   let b = textureLoad(fresh_cloud, clamp(corner + vec2i(1, 0), vec2i(0), last), 0);
   let c = textureLoad(fresh_cloud, clamp(corner + vec2i(0, 1), vec2i(0), last), 0);
   let d = textureLoad(fresh_cloud, clamp(corner + vec2i(1, 1), vec2i(0), last), 0);
-  return mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
+  let low = min(min(a, b), min(c, d));
+  let high = max(max(a, b), max(c, d));
+  let slack = (high - low) * 0.15;
+  return Fresh(mix(mix(a, b, f.x), mix(c, d, f.x), f.y), low - slack, high + slack);
 }
 
 #if HISTORY
 fn is_finite4(v: vec4f) -> bool {
   return is_finite_bits(v.x) && is_finite_bits(v.y) && is_finite_bits(v.z) && is_finite_bits(v.w);
-}
-
-// History lies within what the fresh rays around it show; applied to what moved.
-fn clamped_to_fresh(value: vec4f, ray: vec2u) -> vec4f {
-  var low = vec4f(1e9);
-  var high = vec4f(-1e9);
-  let last = vec2i(view.ray_count) - 1;
-  for (var i = 0; i < 9; i++) {
-    let neighbour = clamp(vec2i(ray) + vec2i(i % 3, i / 3) - 1, vec2i(0), last);
-    let sample = textureLoad(fresh_cloud, neighbour, 0);
-    low = min(low, sample);
-    high = max(high, sample);
-  }
-  let slack = (high - low) * 0.1;
-  return clamp(value, low - slack, high + slack);
 }
 #endif
 
@@ -70,7 +65,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
       cloud = textureLoad(history_cloud, pixel, 0);
       kept_distance = textureLoad(history_distance, pixel, 0).x;
       if (!is_finite4(cloud)) {
-        cloud = upsampled(pixel);
+        cloud = fresh_around(pixel).blend;
       }
     } else {
       // Clear sky has no distance: far away stands in for it.
@@ -79,16 +74,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
       let place = view.camera.eye + dir * reach - view.cloud_motion_m;
       let before = picture_point(view.previous, normalize(place - view.previous.eye));
       let inside = before.z > 0.0 && all(before.xy >= vec2f(0.0)) && all(before.xy <= vec2f(1.0));
-      cloud = upsampled(pixel);
+      let fresh = fresh_around(pixel);
+      cloud = fresh.blend;
       if (inside) {
         let history = textureSampleLevel(history_cloud, linear_clamp, before.xy, 0.0);
         if (is_finite4(history)) {
-          cloud = clamped_to_fresh(history, ray);
+          cloud = clamp(history, fresh.low, fresh.high);
         }
       }
     }
 #else
-    cloud = upsampled(pixel);
+    cloud = fresh_around(pixel).blend;
 #endif
   }
   textureStore(cloud_out, pixel, sanitise4(cloud));

@@ -45,7 +45,7 @@ fn place(id: vec3u) -> Place {
   let field = billowed(height_profile(at.weather, at.layer, at.h), at.large, at.weather, at.layer);
   let density = profile_density(eroded(field, erosion(at.small, at.layer, at.h, at.fade)), at.layer, at.h);
   store(id, vec4f(density, profile_bound(at.weather.body, at.layer), profile_density(field, at.layer, at.h),
-    select(0.0, 1.0, near_surface(field))));
+    select(0.0, 1.0, near_surface(field, at.layer))));
 }
 
 @compute @workgroup_size(64) fn eval_thesis(@builtin(global_invocation_id) id: vec3u) {

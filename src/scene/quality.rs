@@ -52,25 +52,25 @@ params! {
         /// Growth of the step with distance: metres more per metre.
         step_growth: f32 = 0.006, 0.0..=0.1, None;
         /// Optical depth of a step inside dense cloud; the step is never longer than its length by distance.
-        step_depth: f32 = 0.8, 0.02..=10_000.0, None, logarithmic;
+        step_depth: f32 = 1.0, 0.02..=10_000.0, None, logarithmic;
         /// Length of a step in clear air relative to one in cloud.
         empty_stride: f32 = 3.0, 1.0..=8.0, None;
         /// Greatest distance at which clouds are drawn.
         max_distance_m: f32 = 150_000.0, 1000.0..=500_000.0, Metres, logarithmic;
         /// Steps from a sample towards the light.
-        light_steps: u32 = 6, 1..=128, None;
+        light_steps: u32 = 5, 1..=128, None;
         /// Distance covered towards the light.
         light_reach_m: f32 = 2600.0, 50.0..=20_000.0, Metres, logarithmic;
         /// Length of each light step relative to the one before.
-        light_growth: f32 = 1.9, 1.0..=4.0, None;
+        light_growth: f32 = 2.2, 1.0..=4.0, None;
         /// How many of the light steps read the small noise.
-        light_detail_steps: u32 = 1, 0..=128, None;
+        light_detail_steps: u32 = 0, 0..=128, None;
         /// Octaves of multiple scattering on top of the first. 0 is true single scattering.
         octaves: u32 = 5, 0..=7, None;
         /// Transmittance below which a ray ends.
         early_exit: f32 = 0.01, 0.0..=0.2, None;
         /// Distance at which the small noise has faded to its mean.
-        detail_distance_m: f32 = 25_000.0, 100.0..=500_000.0, Metres, logarithmic;
+        detail_distance_m: f32 = 20_000.0, 100.0..=500_000.0, Metres, logarithmic;
         /// Coarser (above 0) or finer mip levels of the noises with distance.
         noise_level_bias: f32 = 0.0, -4.0..=4.0, None;
         /// Share of pixels computed anew in a frame.
@@ -80,7 +80,7 @@ params! {
         /// Resolution of the picture relative to its frame.
         resolution_scale: f32 = 1.0, 0.1..=2.0, None;
         /// Edge length of the map of cloud shadows on the ground.
-        shadow_map_px: u32 = 192, 32..=1024, Pixels;
+        shadow_map_px: u32 = 128, 32..=1024, Pixels;
         /// Samples along a streak of light.
         shaft_samples: u32 = 24, 4..=128, None;
     }
