@@ -101,7 +101,7 @@ fn missing_and_foreign_files_are_refused() {
     refuses(&folder, &render("text.exr", "a.png", &[]), 4, &["text.exr", "neither an OpenEXR nor a PNG"]);
     let bare = folder.path().join("bare.exr");
     let image =
-        nephoscope::export::exr::FloatImage { width: 2, height: 2, rgba: vec![[0.5; 4]; 4], ..Default::default() };
+        nephoscope::images::FloatImage { width: 2, height: 2, rgba: vec![[0.5; 4]; 4], ..Default::default() };
     let (metadata, options) = (nephoscope::export::exr::ExrMetadata::default(), Default::default());
     nephoscope::export::exr::write_exr(&bare, &image, &metadata, options).expect("written");
     refuses(&folder, &render("bare.exr", "a.png", &[]), 4, &["bare.exr", "holds no sky"]);

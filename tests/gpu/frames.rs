@@ -39,7 +39,10 @@ fn slices_make_the_picture_that_a_whole_frame_makes() {
         let mut whole = Vec::new();
         for _ in 0..2 {
             render(&mut renderer, &frame);
-            whole.push((renderer.display_rgba8().expect("it can be read"), renderer.clouds().expect("they can be read")));
+            whole.push((
+                renderer.display_rgba8().expect("it can be read"),
+                renderer.clouds().expect("they can be read"),
+            ));
         }
         renderer.forget_history();
         for (index, expected) in whole.into_iter().enumerate() {
@@ -147,7 +150,10 @@ fn any_sky_in_range_is_finite_light() {
         let image = renderer.linear().expect("it can be read");
         let bad = image.rgba.iter().position(|texel| !is_light(texel));
         assert_eq!(bad, None, "seed {seed}, {output:?}: {:?} in {scene:?}", bad.map(|at| image.rgba[at]));
-        assert!(image.distance_m.iter().all(|distance| distance.is_finite() && *distance >= 0.0), "seed {seed}: distance");
+        assert!(
+            image.distance_m.iter().all(|distance| distance.is_finite() && *distance >= 0.0),
+            "seed {seed}: distance"
+        );
         assert!(output == Output::CloudsAlone || image.rgba.iter().all(|texel| texel[3] == 1.0), "seed {seed}: opaque");
         lit += usize::from(image.rgba.iter().any(|texel| texel[1] > 0.0));
     }
@@ -170,7 +176,11 @@ fn the_sun_goes_through_the_horizon_without_a_flash() {
         let candela = mean * f64::from(image.candela_per_unit);
         if let Some(before) = before {
             let change = (candela / before).ln();
-            assert!((-0.7..0.1).contains(&change), "sun at {}°: from {before} to {candela} cd/m²", scene.sun.elevation_deg);
+            assert!(
+                (-0.7..0.1).contains(&change),
+                "sun at {}°: from {before} to {candela} cd/m²",
+                scene.sun.elevation_deg
+            );
         }
         before = Some(candela);
     }
