@@ -5,7 +5,9 @@ use std::time::{Duration, Instant};
 use nephoscope::render::Progress;
 use nephoscope::scene::builtin::BUILTINS;
 use nephoscope::scene::random::randomise;
-use nephoscope::scene::{DensityModel, DomainKind, MapSource, Output, Projection, Quality, Scene, UpdateFraction};
+use nephoscope::scene::{
+    DensityModel, DomainKind, Frame, MapSource, Output, Projection, Quality, Scene, UpdateFraction,
+};
 
 use crate::common::Random;
 use crate::common::sky::{frame, linear, quick, render, renderer};
@@ -44,6 +46,10 @@ fn slices_make_the_picture_that_a_whole_frame_makes() {
                 renderer.clouds().expect("they can be read"),
             ));
         }
+        // Another picture in the same targets, so that nothing is right by being left over.
+        let mut other = scene.clone();
+        other.weather.coverage = 0.8;
+        render(&mut renderer, &Frame { scene: &other, ..frame });
         renderer.forget_history();
         for (index, expected) in whole.into_iter().enumerate() {
             renderer.begin(&frame).unwrap_or_else(|error| panic!("{error}"));
