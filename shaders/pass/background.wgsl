@@ -46,19 +46,20 @@ fn sky_with_lights(dir: vec3f) -> vec3f {
 }
 
 #if STARS
-// A few thousand points on a cube of directions, brighter ones rarer.
+// A few thousand points, one to a cell of a cube of directions, brighter ones rarer. Cells across an edge of the cube
+// belong to no face alone and stay empty.
 fn stars(dir: vec3f) -> vec3f {
   let a = abs(dir);
   let major = max(a.x, max(a.y, a.z));
-  let q = dir / major * 90.0;
+  let q = dir / major * 96.5;
   let cell = vec3i(floor(q + 0.5));
   let random = hash_cell(cell, 77u);
-  let centre = normalize(vec3f(cell) + (random - 0.5) * 0.7);
+  let centre = normalize(vec3f(cell) + (random - 0.5) * 0.6);
   let miss = length(dir - centre) / max(view.pixel_angle, 4e-4);
-  let present = step(0.86, unit_from_bits(hash_cell_bits(cell, 78u).x));
-  let magnitude = pow(random.y, 9.0) + 0.03;
-  let tint = mix(vec3f(1.0, 0.82, 0.66), vec3f(0.72, 0.85, 1.1), random.z);
-  return tint * present * magnitude * view.star_radiance * exp(-miss * miss * 1.6) * step(0.0, dir.y);
+  let draw = hash_cell(cell, 78u);
+  let magnitude = pow(draw.y, 9.0) + 0.03;
+  let tint = mix(vec3f(1.0, 0.82, 0.66), vec3f(0.72, 0.85, 1.1), draw.z);
+  return tint * step(0.86, draw.x) * magnitude * view.star_radiance * exp(-miss * miss * 1.6) * step(0.0, dir.y);
 }
 #endif
 

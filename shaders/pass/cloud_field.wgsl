@@ -48,6 +48,10 @@ struct Reading {
 var<private> counted_reads: u32;
 #endif
 
+// How near the last place read was to a surface, where it was clear: 1 far away, towards 0 near. The march shortens its
+// steps by it, so that thin edges are not met by some pixels and missed by others.
+var<private> clearness: f32;
+
 fn count_read() {
 #if COUNT
   counted_reads += 1u;
@@ -138,6 +142,7 @@ fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
   var field = billowed(profile, textureSampleLevel(shape_noise, linear_repeat, tile, reading.level), weather, layer);
   if (field <= 0.0) {
+    clearness = min(clearness, -2.0 * field);
     return 0.0;
   }
   if (near_surface(field) && layer.detail_strength > 0.0) {
@@ -148,6 +153,7 @@ fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
     }
 #endif
     field = eroded(field, amount);
+    clearness = 0.0;
   }
   return profile_density(field, layer, h);
 }

@@ -162,10 +162,12 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     let surface_step = step * SURFACE_STEP;
     let fade = clamp(t / scene.detail_distance_m, 0.0, 1.0);
     let level = max(0.0, log2(max(step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
+    clearness = 1.0;
     let media = media_at(origin + dir * t, t, Reading(level, fade < 1.0, fade));
     if (media.extinction <= 0.0) {
       clear_samples += 1u;
-      let ordinary = select(step, step * scene.empty_stride, clear_samples > CLEAR_SAMPLES + 3u);
+      let far = select(step, step * scene.empty_stride, clear_samples > CLEAR_SAMPLES + 3u && clearness >= 1.0);
+      let ordinary = far * max(clearness, 0.35);
       advanced = select(surface_step, ordinary, clear_samples > CLEAR_SAMPLES);
       // On average cloud begins half way to the next sample.
       behind = 0.5 * advanced;
