@@ -100,8 +100,7 @@ fn missing_and_foreign_files_are_refused() {
     write(&folder, "text.exr", "this is no picture");
     refuses(&folder, &render("text.exr", "a.png", &[]), 4, &["text.exr", "neither an OpenEXR nor a PNG"]);
     let bare = folder.path().join("bare.exr");
-    let image =
-        nephoscope::export::exr::FloatImage { width: 2, height: 2, rgba: vec![[0.5; 4]; 4], ..Default::default() };
+    let image = nephoscope::images::FloatImage { width: 2, height: 2, rgba: vec![[0.5; 4]; 4], ..Default::default() };
     let (metadata, options) = (nephoscope::export::exr::ExrMetadata::default(), Default::default());
     nephoscope::export::exr::write_exr(&bare, &image, &metadata, options).expect("written");
     refuses(&folder, &render("bare.exr", "a.png", &[]), 4, &["bare.exr", "holds no sky"]);

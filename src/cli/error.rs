@@ -4,9 +4,9 @@ use std::io::IsTerminal as _;
 use std::process::ExitCode;
 
 use crate::export::ExportError;
-use crate::images::pattern::PatternError;
 use crate::files::FileError;
 use crate::gpu::GpuError;
+use crate::images::pattern::PatternError;
 use crate::render::RenderError;
 use crate::scene::PresetError;
 use crate::scene::edit::EditError;

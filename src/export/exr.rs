@@ -11,8 +11,8 @@ use ::exr::prelude as exrs;
 use ::exr::prelude::{AttributeValue, Text, WritableImage as _};
 use half::f16;
 
-use super::atomic::write_atomically;
 use super::ExportError;
+use super::atomic::write_atomically;
 use crate::images::{Crop, FloatImage, find_non_finite, position, sha256_hex};
 
 /// Prefix of the attributes that only Nephoscope understands.
@@ -355,8 +355,8 @@ fn is_cap_date(date: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::images::map::read_exr;
     use super::*;
+    use crate::images::map::read_exr;
 
     /// A small picture with values that half and float treat differently.
     fn picture() -> FloatImage {

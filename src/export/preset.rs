@@ -124,6 +124,7 @@ mod tests {
     use super::super::exr::{ExrMetadata, ExrOptions, MAX_EMBEDDED_FILE_BYTES, write_exr};
     use super::super::png::{PngPixels, write_png};
     use super::*;
+    use crate::images::FloatImage;
     use std::fs;
     use std::path::PathBuf;
 

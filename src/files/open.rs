@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::{FileError, folder_of};
+use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
 use crate::export::exr::EmbeddedFile;
 use crate::export::preset::read_preset;
-use crate::export::ExportError;
 use crate::images::sha256_hex;
 use crate::scene::builtin::{self, BUILTINS};
 use crate::scene::edit::map_files;

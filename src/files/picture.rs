@@ -6,9 +6,9 @@ use glam::{Mat4, Vec3, Vec4};
 
 use super::FileError;
 use crate::export::exr::{EmbeddedFile, ExrDepth, ExrMetadata, ExrOptions, PRESET, QUALITY, write_exr};
-use crate::images::FloatImage;
 use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME};
 use crate::export::png::{PngPixels, write_png};
+use crate::images::FloatImage;
 use crate::render::LinearImage;
 use crate::scene::edit::map_files;
 use crate::scene::{Camera, PRESET_VERSION, Preset, Projection, Quality, direction, quality_to_ron};

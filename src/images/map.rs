@@ -220,9 +220,9 @@ fn crop_of(header: &::exr::meta::header::Header) -> Option<Crop> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::export::exr::{ExrDepth, ExrMetadata, ExrOptions, write_exr};
     use crate::export::png::{PngPixels, write_png};
-    use super::*;
     use std::path::PathBuf;
 
     fn in_folder(name: &str) -> (tempfile::TempDir, PathBuf) {

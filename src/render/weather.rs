@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use super::RenderError;
 use super::context::{Bound, Context, Extent};
 use super::uniforms::other::{BlendUniforms, MapUniforms};
+use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
 use crate::images::map::read_map_image;
 use crate::images::pattern::FramePattern;
-use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
 use crate::scene::{MapLayer, MapSource, Weather};
 
 /// Edge length of the map.

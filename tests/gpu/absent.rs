@@ -9,6 +9,8 @@ use nephoscope::scene::{DensityModel, Frame, Output, Quality, Scene, UpdateFract
 use crate::common::sky::{frame, linear, quick, render, renderer};
 
 type Change = fn(&mut Setup);
+/// Gives an effect a strength.
+type Strength = fn(&mut Scene, f32);
 
 /// A sky that calls for everything one sky can call for.
 #[derive(Clone)]
@@ -161,23 +163,23 @@ fn what_is_off_does_not_run() {
 fn leaving_out_what_has_no_strength_changes_nothing() {
     // Each pair: compiled out, and compiled in with a strength below the last bit.
     const WHISPER: f32 = 1e-30;
-    let cases: [(&str, fn(&mut Scene, &mut Quality, f32)); 5] = [
-        ("detail", |scene, _, strength| scene.layers[0].detail_strength = strength),
-        ("curl", |scene, _, strength| scene.layers[0].curl_m = strength),
-        ("cloud shadows", |scene, _, strength| scene.ground.cloud_shadows = strength),
-        ("sunshafts", |scene, _, strength| scene.sunshafts.strength = strength),
-        ("front", |scene, _, strength| {
+    let cases: [(&str, Strength); 5] = [
+        ("detail", |scene, strength| scene.layers[0].detail_strength = strength),
+        ("curl", |scene, strength| scene.layers[0].curl_m = strength),
+        ("cloud shadows", |scene, strength| scene.ground.cloud_shadows = strength),
+        ("sunshafts", |scene, strength| scene.sunshafts.strength = strength),
+        ("front", |scene, strength| {
             scene.weather.coverage_changes = strength > 0.0;
             (scene.weather.front_distance_m, scene.weather.front_width_m) = (300_000.0, 100.0);
         }),
     ];
     for (name, change) in cases {
         let take = |strength: f32| {
-            let (mut scene, mut quality) = (Scene::default(), quick());
+            let (mut scene, quality) = (Scene::default(), quick());
             scene.weather.coverage = 0.6;
             // Shafts need the sun near the picture.
             (scene.sun.elevation_deg, scene.camera.heading_deg) = (20.0, scene.sun.azimuth_deg);
-            change(&mut scene, &mut quality, strength);
+            change(&mut scene, strength);
             let plan = FramePlan::new(&Frame {
                 scene: &scene,
                 quality: &quality,

@@ -132,7 +132,10 @@ fn no_density_exceeds_its_bound() {
     for (model, entry_point) in [("profile", "eval_profile_density"), ("thesis", "eval_thesis_density")] {
         let mut dense = 0;
         for (input, [density, bound, smooth, _]) in inputs.iter().zip(evaluated(entry_point, &inputs)) {
-            assert!(density <= bound + 1e-5 && smooth <= bound + 1e-5, "{model} {input:?}: {density}, {smooth} > {bound}");
+            assert!(
+                density <= bound + 1e-5 && smooth <= bound + 1e-5,
+                "{model} {input:?}: {density}, {smooth} > {bound}"
+            );
             assert!((0.0..=1.0).contains(&density), "{model} {input:?}: {density}");
             dense += usize::from(density > 0.1);
         }
@@ -158,7 +161,8 @@ fn the_weather_map_follows_its_twin() {
     let mut random = Random::new(25);
     let mut close = 0;
     for seed in [0, 1, 999_999] {
-        let map = nephoscope::render::uniforms::other::MapUniforms { phase: random.between(0.0, 1.0), ..map_uniforms(seed) };
+        let map =
+            nephoscope::render::uniforms::other::MapUniforms { phase: random.between(0.0, 1.0), ..map_uniforms(seed) };
         let places: Vec<Vec2> =
             (0..1500).map(|_| Vec2::new(random.between(0.0, 1.0), random.between(0.0, 1.0))).collect();
         let case = |uv: &Vec2| {
@@ -222,7 +226,10 @@ fn the_baked_field_stays_under_its_bound_and_inside_its_layer() {
             layer.density_scale = 1.7;
             let mut cloudy = 0;
             for (p, [density, bound, body, h]) in places.iter().zip(field_samples(layer, &places)) {
-                assert!(density >= 0.0 && density <= bound + 1e-5, "model {model} at {p}: {density} > {bound}, body {body}");
+                assert!(
+                    density >= 0.0 && density <= bound + 1e-5,
+                    "model {model} at {p}: {density} > {bound}, body {body}"
+                );
                 assert!(density == 0.0 || (0.0..1.0).contains(&h), "model {model} at {p}: cloud outside its layer");
                 cloudy += usize::from(density > 0.0);
             }

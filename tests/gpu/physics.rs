@@ -1,8 +1,6 @@
 //! The production march against closed forms: homogeneous clouds whose answer is known, and the furnace, which holds for
 //! any cloud.
 
-
-
 use glam::{DVec3, Vec3};
 use nephoscope::reference::shell;
 
@@ -208,6 +206,20 @@ fn long_steps_through_clear_air_lose_no_more_than_one_short_step_of_cloud() {
                 assert!(error <= step_m * 1.01, "stride {stride}, base {base_m} m: {seen_m} m of {THICKNESS_M} m");
             }
         }
+    }
+}
+
+#[test]
+fn the_light_march_reads_the_middle_of_its_steps() {
+    // Level along the bottom of a cloud whose top lies inside a step of the light: half a step is the most it may err.
+    for top_m in [900.0, 1100.0, 1240.0, 1260.0, 1400.0] {
+        let mut march = March::slab(2000.0, 0.001, Vec3::X);
+        march.eye = Vec3::Y;
+        march.scene.layers[0] = uniform_layer(0.0, top_m, 0.001);
+        march.scene.step_m = 100.0;
+        march.scene.light_illuminance = Vec3::splat(4.0 * std::f32::consts::PI);
+        let depth_m = -march.run().rgba[0][0].ln() / 0.001;
+        assert!((depth_m - top_m).abs() <= 126.0, "{depth_m} m of cloud under {top_m} m, in steps of 250 m");
     }
 }
 

@@ -14,8 +14,7 @@ use nephoscope::shader::{FILES, compose, validate};
 fn every_function_file_and_test_shader_is_valid() {
     let mut failures = Vec::new();
     for (path, _) in FILES.iter().filter(|(path, _)| !path.starts_with("pass/")) {
-        let result =
-            compose(path, &BTreeSet::new(), TABLE.flags, TABLE.structs).and_then(|source| validate(&source));
+        let result = compose(path, &BTreeSet::new(), TABLE.flags, TABLE.structs).and_then(|source| validate(&source));
         if let Err(error) = result {
             failures.push(error.to_string());
         }
@@ -101,6 +100,9 @@ fn every_pass_in_every_form_that_a_sky_can_ask_for_is_valid() {
 fn no_flag_is_known_that_no_shader_asks_for() {
     for flag in TABLE.flags {
         let asked = format!("#if {flag}");
-        assert!(FILES.iter().any(|(_, text)| text.lines().any(|line| line.trim() == asked)), "{flag} is never asked for");
+        assert!(
+            FILES.iter().any(|(_, text)| text.lines().any(|line| line.trim() == asked)),
+            "{flag} is never asked for"
+        );
     }
 }

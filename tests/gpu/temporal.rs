@@ -167,9 +167,8 @@ impl Reprojection {
         let offset = UpdatePattern::new(UpdateFraction::Sixteenth, UpdateOrder::Cross).offset(self.phase);
         let view = gpu().uniform("view", bytemuck::bytes_of(&self.view(offset)));
         let rays = [SIZE[0] / 4, SIZE[1] / 4];
-        let mut fresh: Vec<[f32; 4]> = (0..rays[1])
-            .flat_map(|y| (0..rays[0]).map(move |x| truth(x * 4 + offset[0], y * 4 + offset[1])))
-            .collect();
+        let mut fresh: Vec<[f32; 4]> =
+            (0..rays[1]).flat_map(|y| (0..rays[0]).map(move |x| truth(x * 4 + offset[0], y * 4 + offset[1]))).collect();
         if let Some(poison) = fresh_poison {
             fresh[8] = [poison; 4];
         }
@@ -215,14 +214,25 @@ fn poison_in_the_history_never_spreads_and_heals_within_a_cycle() {
             for step in 0..16 {
                 clean.step(None);
                 ill.step(None);
-                let finite = |texel: &[f32; 4]| texel.iter().all(|value| value.is_finite() && (0.0..=1.5).contains(value));
+                let finite =
+                    |texel: &[f32; 4]| texel.iter().all(|value| value.is_finite() && (0.0..=1.5).contains(value));
                 assert!(ill.picture.iter().all(finite), "{poison}, moving {moving}: not healthy after frame {step}");
+                // What cannot be shown is replaced by what is around it, never by black.
+                let least = if poison == -7.0 { 0.0 } else { 0.02 };
+                let shown = ill.picture.iter().flatten().all(|value| *value >= least);
+                assert!(shown, "{poison}, moving {moving}: a hole after frame {step}");
                 let differing = ill.differing(&clean);
                 // A bilinear read touches four texels of each of the four places; clamping keeps them near.
-                assert!(differing <= if moving { 64 } else { 4 }, "{poison}, moving {moving}, frame {step}: {differing} differ");
+                assert!(
+                    differing <= if moving { 64 } else { 4 },
+                    "{poison}, moving {moving}, frame {step}: {differing} differ"
+                );
             }
             let differing = ill.differing(&clean);
-            assert!(differing <= if moving { 16 } else { 0 }, "{poison}, moving {moving}: {differing} pixels never healed");
+            assert!(
+                differing <= if moving { 16 } else { 0 },
+                "{poison}, moving {moving}: {differing} pixels never healed"
+            );
         }
     }
 }

@@ -56,9 +56,19 @@ fn every_baked_texture_repeats_without_a_seam() {
             let (inner, seam) = differences(&texels, side, axes, channel);
             // A type of cloud may end at the seam as it may inside, so means are compared where values jump.
             let mean = (seam.mean(), inner.mean() * 1.5 + 1e-3);
-            assert!(mean.0 <= mean.1, "{name} {channel}: mean difference at the seam {} and inside {}", mean.0, inner.mean());
+            assert!(
+                mean.0 <= mean.1,
+                "{name} {channel}: mean difference at the seam {} and inside {}",
+                mean.0,
+                inner.mean()
+            );
             let greatest = inner.greatest * 1.05 + 1e-3;
-            assert!(seam.greatest <= greatest, "{name} {channel}: {} at the seam, {} inside", seam.greatest, inner.greatest);
+            assert!(
+                seam.greatest <= greatest,
+                "{name} {channel}: {} at the seam, {} inside",
+                seam.greatest,
+                inner.greatest
+            );
         }
     }
 }
@@ -66,7 +76,9 @@ fn every_baked_texture_repeats_without_a_seam() {
 #[test]
 fn textures_fill_the_range_that_the_models_expect() {
     let field = Field::baked();
-    for (name, texture, channels) in [("shape", &field.shape, 4), ("worley", &field.worley, 4), ("detail", &field.detail, 4)] {
+    for (name, texture, channels) in
+        [("shape", &field.shape, 4), ("worley", &field.worley, 4), ("detail", &field.detail, 4)]
+    {
         let texels = read(texture);
         for channel in 0..channels {
             let values = texels.iter().map(|texel| texel[channel]);
