@@ -127,7 +127,8 @@ fn random_sky(seed: u32) -> (Scene, Quality) {
     quality.early_exit = random.pick(&[0.0, 0.01, 0.2]);
     quality.noise_level_bias = random.pick(&[-4.0, 0.0, 4.0]);
     // Values are random, forms of the shaders are few: each has to be compiled.
-    quality.octaves = 2;
+    // At night there are no octaves, which would double the forms of all the others.
+    quality.octaves = if seed % 4 == 1 { 2 } else { 0 };
     scene.weather.coverage_changes = true;
     scene.air.aerial_perspective = true;
     (scene.ground.visible, scene.camera.pitch_deg) = (true, scene.camera.pitch_deg.min(20.0));
@@ -150,7 +151,7 @@ fn any_sky_in_range_is_finite_light() {
     let mut lit = 0;
     for seed in 0..40 {
         let (scene, quality) = random_sky(seed);
-        let output = if seed % 5 == 0 { Output::CloudsAlone } else { Output::Linear };
+        let output = if seed % 8 == 1 { Output::CloudsAlone } else { Output::Linear };
         let mut renderer = renderer();
         render(&mut renderer, &frame(&scene, &quality, [32, 18], output));
         let image = renderer.linear().expect("it can be read");
