@@ -33,10 +33,7 @@ impl ShaderChecks {
 
 /// A shader module with the checks in use.
 #[allow(unsafe_code, reason = "wgpu marks the choice of runtime checks unsafe; every loop of our shaders is counted")]
-pub(super) fn shader_module(
-    device: &wgpu::Device,
-    descriptor: wgpu::ShaderModuleDescriptor<'_>,
-) -> wgpu::ShaderModule {
+pub(super) fn shader_module(device: &wgpu::Device, descriptor: wgpu::ShaderModuleDescriptor<'_>) -> wgpu::ShaderModule {
     let checks = wgpu::ShaderRuntimeChecks {
         force_loop_bounding: ShaderChecks::in_use() == ShaderChecks::All,
         ..wgpu::ShaderRuntimeChecks::checked()
