@@ -83,17 +83,11 @@ fn key_light_at(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
 var<private> ambient_above: vec3f;
 var<private> ambient_below: vec3f;
 
-struct Media {
-  extinction: f32,
-  // Light sent to the eye per unit of optical depth.
-  source: vec3f,
-}
-
-// Light of all layers at a place that has cloud.
-fn source_at(p: vec3f, altitude: f32, distance_m: f32, densities: array<f32, 4>, extinction: f32, level: f32) -> vec3f {
+// Light of all layers at a place that has cloud, sent to the eye per unit of optical depth.
+fn source_at(p: vec3f, altitude: f32, distance_m: f32, densities: vec4f) -> vec3f {
   var octaves: array<f32, 8>;
   let light = key_light_at(p, altitude, distance_m);
-  let depth = sun_optical_depth(p, level);
+  let depth = sun_optical_depth(p, noise_level(distance_m));
 #if COUNT
   atomicAdd(&counters[2], scene.light_steps);
 #endif
@@ -104,6 +98,7 @@ fn source_at(p: vec3f, altitude: f32, distance_m: f32, densities: array<f32, 4>,
     scale *= scene.octave_extinction;
     energy *= scene.octave_energy;
   }
+  let extinction = extinction_of(densities);
   var source = vec3f(0.0);
   for (var i = 0u; i < LAYERS; i++) {
     let layer = scene.layers[i];
@@ -120,20 +115,56 @@ fn source_at(p: vec3f, altitude: f32, distance_m: f32, densities: array<f32, 4>,
   return source;
 }
 
-fn media_at(p: vec3f, distance_m: f32, reading: Reading) -> Media {
-  let altitude = altitude_of(p);
-  var densities: array<f32, 4>;
+fn extinction_of(densities: vec4f) -> f32 {
   var extinction = 0.0;
   for (var i = 0u; i < LAYERS; i++) {
-    let density = layer_density(i, p, altitude, reading);
-    densities[i] = density;
-    extinction += density * scene.layers[i].extinction_per_m;
+    extinction += densities[i] * scene.layers[i].extinction_per_m;
   }
-  var source = vec3f(0.0);
-  if (extinction > 0.0) {
-    source = source_at(p, altitude, distance_m, densities, extinction, reading.level);
+  return extinction;
+}
+
+// Densities of the layers at a place on the ray.
+fn densities_at(p: vec3f, reading: Reading) -> vec4f {
+  let altitude = altitude_of(p);
+  var densities = vec4f(0.0);
+  for (var i = 0u; i < LAYERS; i++) {
+    densities[i] = layer_density(i, p, altitude, reading);
   }
-  return Media(extinction, source);
+  return densities;
+}
+
+fn step_at(distance_m: f32) -> f32 {
+  return scene.step_m + scene.step_growth * distance_m;
+}
+
+fn noise_level(distance_m: f32) -> f32 {
+  return max(0.0, log2(max(step_at(distance_m) / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
+}
+
+// Samples inside cloud wait here for their light. Rays that run side by side meet cloud at different steps; lit one
+// after the other they would wait for each other, lit together they do not.
+const WAITING: u32 = 8u;
+var<private> waiting_count: u32;
+var<private> waiting_distance: array<f32, 8>;
+var<private> waiting_share: array<f32, 8>;
+var<private> waiting_densities: array<vec4f, 8>;
+
+// Light of the samples that wait, seen through the air and the cloud before them.
+fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
+  var light = vec3f(0.0);
+  for (var k = 0u; k < waiting_count; k++) {
+    let t = waiting_distance[k];
+    let p = origin + dir * t;
+    let source = source_at(p, altitude_of(p), t, waiting_densities[k]);
+#if AIR
+    let ahead = air_before(dir, t);
+    light += waiting_share[k] * (ahead.transmittance * source + ahead.light);
+#else
+    light += waiting_share[k] * source;
+#endif
+  }
+  waiting_count = 0u;
+  return light;
 }
 
 var<private> steps_left: u32;
@@ -149,7 +180,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
   var seen = seen_before;
   // How much of the way before a sample still counts as its own: the last step makes up for it, so that even cloud
   // absorbs what the whole stretch absorbs, whatever the jitter.
-  var behind = jitter * (scene.step_m + scene.step_growth * segment.x);
+  var behind = jitter * step_at(segment.x);
   var t = segment.x + behind;
   var advanced = 0.0;
   var clear_samples = CLEAR_SAMPLES;
@@ -158,13 +189,13 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
 #if COUNT
     atomicAdd(&counters[1], 1u);
 #endif
-    let step = scene.step_m + scene.step_growth * t;
+    let step = step_at(t);
     let surface_step = step * SURFACE_STEP;
     let fade = clamp(t / scene.detail_distance_m, 0.0, 1.0);
-    let level = max(0.0, log2(max(step / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
     clearness = 1.0;
-    let media = media_at(origin + dir * t, t, Reading(level, fade < 1.0, fade));
-    if (media.extinction <= 0.0) {
+    let densities = densities_at(origin + dir * t, Reading(noise_level(t), fade < 1.0, fade));
+    let extinction = extinction_of(densities);
+    if (extinction <= 0.0) {
       clear_samples += 1u;
       let far = select(step, step * scene.empty_stride, clear_samples > CLEAR_SAMPLES + 3u && clearness >= 1.0);
       let ordinary = far * max(clearness, 0.35);
@@ -172,7 +203,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       // On average cloud begins half way to the next sample.
       behind = 0.5 * advanced;
       t += advanced;
-    } else if (advanced > 1.5 * surface_step && media.extinction * step > 0.5 * scene.step_depth) {
+    } else if (advanced > 1.5 * surface_step && extinction * step > 0.5 * scene.step_depth) {
       // Entered a dense cloud from clear air: go back to look for its surface.
       t -= advanced - surface_step;
       behind = 0.5 * surface_step;
@@ -181,16 +212,17 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     } else {
       clear_samples = 0u;
       advanced = 0.0;
-      let wanted = min(step, max(scene.step_depth / (media.extinction * max(seen.transmittance, 0.15)), surface_step));
+      let wanted = min(step, max(scene.step_depth / (extinction * max(seen.transmittance, 0.15)), surface_step));
       let length = select(wanted, segment.y - t + behind, t + wanted >= segment.y);
-      let alpha = absorbed(media.extinction * length);
+      let alpha = absorbed(extinction * length);
       let share = seen.transmittance * alpha;
-#if AIR
-      let ahead = air_before(dir, t);
-      seen.light += share * (ahead.transmittance * media.source + ahead.light);
-#else
-      seen.light += share * media.source;
-#endif
+      waiting_distance[waiting_count] = t;
+      waiting_share[waiting_count] = share;
+      waiting_densities[waiting_count] = densities;
+      waiting_count += 1u;
+      if (waiting_count == WAITING) {
+        seen.light += light_of_waiting(origin, dir);
+      }
       seen.distance_sum += share * t;
       seen.weight_sum += share;
       seen.transmittance *= 1.0 - alpha;
@@ -237,6 +269,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (second.y > second.x) {
       seen = march_segment(seen, origin, dir, second, jitter);
     }
+    seen.light += light_of_waiting(origin, dir);
   }
   let opened = after_early_exit(seen.transmittance, scene.early_exit);
   let transmittance = opened.x;
