@@ -32,11 +32,16 @@
 @group(2) @binding(0) var background_out: texture_storage_2d<rgba16float, write>;
 #endif
 
+// Room for a soft edge of the discs, in radians.
+const DISC_MARGIN: f32 = 0.1;
+
 fn sky_with_lights(dir: vec3f) -> vec3f {
   let altitude = max(view.camera.eye.y, 0.0);
   var light = sky_radiance(sky_view, linear_repeat, air, dir);
-  let discs = sun_disc(air, dir, view.pixel_angle) + moon_disc(air, dir, view.pixel_angle);
-  if (max(discs.x, max(discs.y, discs.z)) > 0.0) {
+  // The discs are small: most directions need not look closer.
+  if (max(dot(dir, air.towards_sun) - cos(air.sun_angular_radius + DISC_MARGIN),
+      dot(dir, air.towards_moon) - cos(air.moon_angular_radius + DISC_MARGIN)) > 0.0) {
+    let discs = sun_disc(air, dir, view.pixel_angle) + moon_disc(air, dir, view.pixel_angle);
     light += discs * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
   }
 #if STARS
