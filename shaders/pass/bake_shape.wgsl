@@ -18,9 +18,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   let w10 = worley(p, 10, 102u);
   let w20 = worley(p, 20, 103u);
   let w40 = worley(p, 40, 104u);
+  let billows = w5 * 0.625 + w10 * 0.25 + w20 * 0.125;
+  // As perlin_worley, but lifted from the cells that green holds: three Worley octaves less.
+  let connected = clamp(perlin_fbm(p, 4, 5, 7u) * 0.9 + 0.5, 0.0, 1.0);
   textureStore(noise_out, texel, vec4f(
-    perlin_worley(p, 7u),
-    w5 * 0.625 + w10 * 0.25 + w20 * 0.125,
+    billows + connected * (1.0 - billows),
+    billows,
     w10 * 0.625 + w20 * 0.25 + w40 * 0.125,
     w20 * 0.7 + w40 * 0.3,
   ));
