@@ -6,7 +6,7 @@ use super::bench::{Case, PassSamples, Stats, add_passes};
 use super::table::{Cell, Table};
 use crate::gpu::TimingSource;
 use crate::render::{RenderError, Renderer};
-use crate::scene::{Camera, Frame, Output};
+use crate::scene::{Camera, Frame, Output, Quality, UpdateFraction};
 
 /// Scene time from one frame to the next, in seconds: the rate that the flight should at least reach.
 const FRAME_SECS: f64 = 1.0 / 8.0;
@@ -29,6 +29,42 @@ pub struct Flight {
     pub frame_ms: Vec<f64>,
     /// Samples of each pass.
     pub passes: Vec<PassSamples>,
+    /// How far the last picture is from the same frame computed whole.
+    pub trail: Trail,
+}
+
+/// What reprojection leaves behind a moving camera: differences of the display's 8-bit levels, the greatest of the three
+/// channels of each pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trail {
+    /// Mean difference in levels.
+    pub mean: f64,
+    /// Difference that 95 % of the pixels stay below.
+    pub p95: u8,
+    /// Difference that 99 % of the pixels stay below.
+    pub p99: u8,
+}
+
+impl Trail {
+    /// The differences of two pictures of four channels.
+    fn between(seen: &[u8], expected: &[u8]) -> Self {
+        let mut differences: Vec<u8> = seen
+            .chunks_exact(4)
+            .zip(expected.chunks_exact(4))
+            .map(|(a, b)| (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap_or(0))
+            .collect();
+        if differences.is_empty() {
+            return Self::default();
+        }
+        differences.sort_unstable();
+        let count = differences.len();
+        let sum: u64 = differences.iter().map(|difference| u64::from(*difference)).sum();
+        Self {
+            mean: sum as f64 / count as f64,
+            p95: differences[(count * 95 / 100).min(count - 1)],
+            p99: differences[(count * 99 / 100).min(count - 1)],
+        }
+    }
 }
 
 /// The camera of a frame of the flight: forwards, swaying from side to side, climbing a little.
@@ -52,7 +88,8 @@ pub fn camera_at(start: &Camera, time_secs: f64) -> Camera {
 /// If a frame cannot be rendered.
 pub fn fly(renderer: &mut Renderer, case: &Case, frames: u32) -> Result<Flight, RenderError> {
     let mut scene = case.scene.clone();
-    let mut flight = Flight { frames, frames_per_sec: 0.0, frame_ms: Vec::new(), passes: Vec::new() };
+    let mut flight =
+        Flight { frames, frames_per_sec: 0.0, frame_ms: Vec::new(), passes: Vec::new(), trail: Trail::default() };
     for index in 0..WARM_UP + frames {
         let time_secs = f64::from(index) * FRAME_SECS;
         scene.camera = camera_at(&case.scene.camera, time_secs);
@@ -67,18 +104,28 @@ pub fn fly(renderer: &mut Renderer, case: &Case, frames: u32) -> Result<Flight, 
     }
     let seconds = flight.frame_ms.iter().sum::<f64>() * 1e-3;
     flight.frames_per_sec = f64::from(frames) / seconds.max(1e-9);
+    let (_, seen) = renderer.display_rgba8()?;
+    let whole = Quality { update: UpdateFraction::Full, ..case.quality.clone() };
+    let time_secs = f64::from(WARM_UP + frames - 1) * FRAME_SECS;
+    renderer.render(&Frame { scene: &scene, quality: &whole, size: case.size, time_secs, output: Output::Display })?;
+    let (_, expected) = renderer.display_rgba8()?;
+    flight.trail = Trail::between(&seen, &expected);
     Ok(flight)
 }
 
 /// The budget: what each pass takes of a frame on average, the rest of the program's own time last.
 pub fn table(case: &Case, flight: &Flight, source: TimingSource) -> Table {
     let title = format!(
-        "Flight through {} at {}: {:.1} frames per second over {} frames ({}, frames by wall clock)",
+        "Flight through {} at {}: {:.1} frames per second over {} frames ({}, frames by wall clock); trail behind the \
+         moving camera: mean {:.2}, 95 % below {}, 99 % below {} of 255 levels",
         case.name,
         case.size_text(),
         flight.frames_per_sec,
         flight.frames,
-        source.label()
+        source.label(),
+        flight.trail.mean,
+        flight.trail.p95,
+        flight.trail.p99
     );
     let mut table = Table::new(title, &["pass", "runs", "median", "p5", "p95", "mean per frame", "share %"]);
     let count = f64::from(flight.frames.max(1));
@@ -109,6 +156,16 @@ pub fn table(case: &Case, flight: &Flight, source: TimingSource) -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_trail_is_the_difference_of_pictures() {
+        let still = [10_u8, 20, 30, 255].repeat(100);
+        assert_eq!(Trail::between(&still, &still), Trail::default());
+        let mut moved = still.clone();
+        moved[1] = 40;
+        let trail = Trail::between(&moved, &still);
+        assert!((trail.mean - 0.2).abs() < 1e-9 && trail.p95 == 0, "one pixel of a hundred, by 20 levels: {trail:?}");
+    }
 
     #[test]
     fn the_flight_starts_at_the_camera_and_moves_on() {
