@@ -148,9 +148,9 @@ fn ground_albedo(p: vec3f, normal: vec3f, distance_m: f32) -> vec3f {
   var albedo = ground.albedo;
 #if TERRAIN
   let uv = p.xz * ground.tile_from_world.z + ground.tile_from_world.xy;
-  let patches = textureSampleLevel(terrain_map, linear_repeat, uv * 31.0, 0.0).z;
-  let fields = textureSampleLevel(terrain_map, linear_repeat, uv * 173.0, 0.0).z;
-  let fade = exp(-distance_m / 25000.0);
+  let patches = textureSampleLevel(terrain_map, linear_repeat, uv * 7.3, 0.0).z;
+  let fields = textureSampleLevel(terrain_map, linear_repeat, uv * 61.0, 0.0).z;
+  let fade = exp(-distance_m / 8000.0);
   albedo *= 0.45 + 1.1 * patches + (fields - 0.5) * 0.9 * fade;
   albedo = mix(albedo, albedo.grr * vec3f(0.95, 0.85, 0.6), clamp(fields * 2.0 - 0.9, 0.0, 0.6));
   let height = max(altitude_at(p, ground.planet_radius_m), 0.0);

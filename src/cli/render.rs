@@ -75,6 +75,8 @@ enum ProjectionArg {
     Perspective,
     /// All directions, longitude across and latitude down.
     Equirect,
+    /// The upper half of all directions: the zenith at the top, the horizon at the bottom
+    Dome,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -176,6 +178,7 @@ impl Job {
             None => {}
             Some(ProjectionArg::Perspective) => preset.scene.camera.projection = Projection::Perspective,
             Some(ProjectionArg::Equirect) => preset.scene.camera.projection = Projection::Equirect,
+            Some(ProjectionArg::Dome) => preset.scene.camera.projection = Projection::Dome,
         }
         let output = match (format, args.clouds_only) {
             (Format::Png, _) => Output::Display,
