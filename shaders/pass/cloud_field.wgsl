@@ -207,6 +207,18 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
   return density * layer.density_scale;
 }
 
+// Never below the density of a layer anywhere in a cell of the map, whose greatest body is given: the only majorant.
+fn density_bound(layer: LayerUniforms, greatest_body: f32) -> f32 {
+  var bound = greatest_body;
+  if (layer.model == MODEL_PROFILE) {
+    bound = profile_bound(greatest_body, layer);
+  }
+  if (layer.model == MODEL_THESIS) {
+    bound = thesis_bound(greatest_body, layer);
+  }
+  return bound * layer.density_scale;
+}
+
 // Extinction of all layers at a place towards the key light, in 1/m.
 fn shadow_extinction(p: vec3f, reading: Reading) -> f32 {
   let altitude = altitude_of(p);
