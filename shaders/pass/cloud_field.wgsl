@@ -33,6 +33,9 @@ override LAYERS: u32 = 1u;
 #if CURL
 @group(1) @binding(6) var curl_noise: texture_2d<f32>;
 #endif
+#if SKIP
+@group(1) @binding(7) var weather_bound: texture_2d<f32>;
+#endif
 
 // How a place is read: what Quality leaves out for speed. Truths read everything at level 0.
 struct Reading {
@@ -51,6 +54,12 @@ var<private> counted_reads: u32;
 // How near the last place read was to a surface, where it was clear: 1 far away, towards 0 near. The march shortens its
 // steps by it, so that thin edges are not met by some pixels and missed by others.
 var<private> clearness: f32;
+
+// How far from the last place read, where it was clear, the map promises no cloud in any direction.
+var<private> clear_way: f32;
+
+// Part of a cell that is safe to cross although layers lean.
+const SAFE_CELL: f32 = 0.6;
 
 fn count_read() {
 #if COUNT
@@ -95,8 +104,29 @@ fn domain_exit(p: vec3f, dir: vec3f) -> f32 {
   }
 }
 
+fn map_uv(layer: LayerUniforms, p: vec2f, h: f32) -> vec2f {
+  return (p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
+}
+
+// Called where the map has no body: asks for how far.
+fn note_clear(layer: LayerUniforms, p: vec2f, h: f32) {
+  var way = 0.0;
+#if SKIP
+  count_read();
+  let uv = map_uv(layer, p, h);
+  let cells = vec2f(textureDimensions(weather_bound));
+  let bound = textureLoad(weather_bound, vec2u(min((uv - floor(uv)) * cells, cells - 1.0)), 0).x;
+  var bias = layer.body_bias;
+#if FRONT
+  bias = max(bias, layer.body_bias_beyond);
+#endif
+  way = select(0.0, SAFE_CELL / (layer.map_from_world.z * cells.x), bound * layer.body_scale + bias <= 0.0);
+#endif
+  clear_way = min(clear_way, way);
+}
+
 fn map_texel(layer: LayerUniforms, p: vec2f, h: f32) -> vec4f {
-  var uv = (p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
+  var uv = map_uv(layer, p, h);
   if (scene.map_edge == EDGE_CLAMP) {
     uv = clamp(uv, vec2f(0.001), vec2f(0.999));
   } else if (scene.map_edge != EDGE_REPEAT && any(abs(uv - 0.5) > vec2f(0.5))) {
@@ -137,6 +167,11 @@ fn detail_texel(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> vec
 #if PROFILE
 fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let weather = weather_at(layer, p.xz, h);
+  if (weather.body <= 0.0) {
+    note_clear(layer, p.xz, h);
+    return 0.0;
+  }
+  clear_way = 0.0;
   let profile = height_profile(weather, layer, h);
   if (profile < 0.02) {
     return 0.0;
@@ -165,6 +200,11 @@ fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
 #if THESIS
 fn thesis_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let weather = weather_at(layer, p.xz, h);
+  if (weather.body <= 0.0) {
+    note_clear(layer, p.xz, h);
+    return 0.0;
+  }
+  clear_way = 0.0;
   let profile = thesis_profile(weather, h);
   if (max(profile.x, max(profile.y, profile.z)) < THESIS_THRESHOLD) {
     return 0.0;
@@ -202,6 +242,7 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
 #if UNIFORM
   if (layer.model == MODEL_UNIFORM) {
     density = weather_at(layer, p.xz, h).body;
+    clear_way = 0.0;
   }
 #endif
   return density * layer.density_scale;

@@ -173,6 +173,8 @@ var<private> steps_left: u32;
 const SURFACE_STEP: f32 = 0.2;
 // Clear samples after which long steps are taken.
 const CLEAR_SAMPLES: u32 = 6u;
+// Longest step, relative to ordinary ones, where cloud may be near.
+const NEAR_STRIDE: f32 = 1.7;
 
 // One stretch of the ray. Three lengths of step: long ones in clear air; on meeting cloud a step back, and short ones
 // to find its surface; inside, steps of equal optical depth, longer where little is left to see.
@@ -193,12 +195,15 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     let surface_step = step * SURFACE_STEP;
     let fade = clamp(t / scene.detail_distance_m, 0.0, 1.0);
     clearness = 1.0;
+    clear_way = FAR_M;
     let densities = densities_at(origin + dir * t, Reading(noise_level(t), fade < 1.0, fade));
     let extinction = extinction_of(densities);
     if (extinction <= 0.0) {
       clear_samples += 1u;
-      let far = select(step, step * scene.empty_stride, clear_samples > CLEAR_SAMPLES + 3u && clearness >= 1.0);
-      let ordinary = far * max(clearness, 0.35);
+      // Where the map promises clear air all that way; else long steps only after some clear ones, away from surfaces.
+      let stride = select(min(scene.empty_stride, NEAR_STRIDE), scene.empty_stride, clear_way >= FAR_M);
+      let far = select(step, step * stride, clear_samples > CLEAR_SAMPLES + 3u && clearness >= 1.0);
+      let ordinary = select(far * max(clearness, 0.35), clear_way, clear_way > step * stride && clear_way < FAR_M);
       advanced = select(surface_step, ordinary, clear_samples > CLEAR_SAMPLES);
       // On average cloud begins half way to the next sample.
       behind = 0.5 * advanced;

@@ -177,7 +177,7 @@ mod tests {
                 assert_eq!(case.quality.update, UpdateFraction::Sixteenth);
             }
         }
-        assert_eq!(SIZE[0] * SIZE[1] / 2 / 16, 131_072);
+        assert_eq!(SIZE[0] * SIZE[1] / 16, 131_072);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use super::reasons::Reasons;
 use super::{KeyLight, Lighting};
-use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, Output, Scene};
+use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, MapEdge, Output, Scene};
 
 /// The compiled form of the march: the key of its pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,12 +31,14 @@ pub struct MarchVariant {
     pub ground: bool,
     /// Targets are float.
     pub float: bool,
+    /// Clear air is crossed in steps as long as the map allows.
+    pub skip: bool,
 }
 
 impl MarchVariant {
     /// Every flag the cloud shaders know.
-    pub const FLAGS: [&'static str; 9] =
-        ["PROFILE", "THESIS", "UNIFORM", "DETAIL", "CURL", "FRONT", "AIR", "GROUND", "FLOAT"];
+    pub const FLAGS: [&'static str; 10] =
+        ["PROFILE", "THESIS", "UNIFORM", "DETAIL", "CURL", "FRONT", "AIR", "GROUND", "FLOAT", "SKIP"];
 
     /// The variant a frame needs, or `None` when no cloud can be in it.
     pub(super) fn new(frame: &Frame<'_>, ground: bool, lighting: &Lighting, why: &mut Reasons) -> Option<Self> {
@@ -64,6 +66,14 @@ impl MarchVariant {
             "air lies before the clouds",
             "it is switched off, or clouds stand alone",
         );
+        let repeats = scene.weather.edge == MapEdge::Repeat;
+        let skip = repeats && frame.quality.empty_stride > 1.0 && any(|layer| layer.model != DensityModel::Uniform);
+        why.either(
+            skip,
+            "empty-space skipping",
+            "the map says where nothing is",
+            "every step is short, or the map ends",
+        );
         Some(Self {
             layers: u32::try_from(layers.len()).unwrap_or(1),
             octaves,
@@ -77,6 +87,7 @@ impl MarchVariant {
             air,
             ground,
             float: frame.output != Output::Display,
+            skip,
         })
     }
 
@@ -92,13 +103,14 @@ impl MarchVariant {
             self.air,
             self.ground,
             self.float,
+            self.skip,
         ];
         Self::FLAGS.into_iter().zip(on).filter_map(|(flag, on)| on.then_some(flag))
     }
 
     /// The flags that decide how the density field is read, for other passes that read it.
     pub fn field_flags(self) -> impl Iterator<Item = &'static str> {
-        self.flags().filter(|flag| !matches!(*flag, "AIR" | "GROUND" | "FLOAT"))
+        self.flags().filter(|flag| !matches!(*flag, "AIR" | "GROUND" | "FLOAT" | "SKIP"))
     }
 
     /// Numbers the compiler should know.

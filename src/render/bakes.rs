@@ -143,6 +143,7 @@ pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
         ("pass/bake_mip.wgsl", march.is_some()),
         ("pass/bake_terrain.wgsl", plan.ground.is_some_and(|ground| ground.terrain)),
         ("pass/weather_map.wgsl", march.is_some()),
+        ("pass/weather_bound.wgsl", wants(|march| march.skip)),
         ("pass/weather_blend.wgsl", march.is_some()),
     ];
     all.into_iter().filter(|(_, wanted)| *wanted).map(|(file, _)| ProgramKey::plain(file)).collect()

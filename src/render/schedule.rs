@@ -42,6 +42,7 @@ impl Renderer {
         self.bakes.update(&context, &plan, scene.ground.seed, &mut jobs)?;
         if plan.march.is_some() {
             self.weather.update(&context, &scene.weather, frame.time_secs, &mut jobs)?;
+            self.weather.update_bound(&context, plan.march.is_some_and(|march| march.skip), &mut jobs)?;
         } else {
             self.weather.clear();
         }
@@ -68,9 +69,7 @@ impl Renderer {
 
         let mut shared = self.bakes.resources();
         shared.extend(self.sky.resources());
-        if let Some(map) = self.weather.texture() {
-            shared.push(("weather_map", wgpu::BindingResource::TextureView(&map.view)));
-        }
+        shared.extend(self.weather.resources());
         let display = &targets.display[self.display_side];
         let mut passes = Passes { context: &context, plan: &plan, targets, shared, buffers: &buffers, jobs };
         passes.cloud_shadow()?;

@@ -11,7 +11,7 @@ use crate::gpu::ShaderTable;
 pub const TABLE: ShaderTable = ShaderTable {
     flags: &[
         "AIR", "ALONE", "BELOW", "CLOUDS", "COUNT", "CURL", "DETAIL", "FLOAT", "FRONT", "GROUND", "HISTORY", "PROFILE",
-        "SHADOW", "SHAFTS", "STARS", "TERRAIN", "THESIS", "UNIFORM",
+        "SHADOW", "SHAFTS", "SKIP", "STARS", "TERRAIN", "THESIS", "UNIFORM",
     ],
     structs: &[
         AirUniforms::GENERATED,

@@ -12,6 +12,8 @@ use crate::scene::{MapLayer, MapSource, Weather};
 
 /// Edge length of the map.
 const SIDE: u32 = 512;
+/// Cells across the map for which its greatest field is known.
+const CELLS: u32 = 64;
 /// Largest user image.
 const LARGEST_IMAGE: u32 = 4096;
 /// States of a generated map in the time in which it becomes another; between two of them it is blended.
@@ -37,13 +39,17 @@ pub(super) struct WeatherMap {
     states: Vec<State>,
     /// The joined map of each layer over those below it; the last is the map.
     joined: Vec<Texture>,
+    /// The greatest field of the map around each of its cells, where rays skip by it.
+    bound: Option<Texture>,
+    /// Whether the map has changed since that was found.
+    bound_is_stale: bool,
     /// States and share that each joined map was made from.
     made_from: Vec<(StateKey, StateKey, f32)>,
 }
 
 impl WeatherMap {
     pub(super) fn new() -> Self {
-        Self { states: Vec::new(), joined: Vec::new(), made_from: Vec::new() }
+        Self { states: Vec::new(), joined: Vec::new(), bound: None, bound_is_stale: true, made_from: Vec::new() }
     }
 
     /// Appends the jobs that bring the map to a time.
@@ -73,7 +79,41 @@ impl WeatherMap {
         }
         self.join(context, &wanted, jobs)?;
         self.made_from = wanted;
+        self.bound_is_stale = true;
         Ok(())
+    }
+
+    /// Appends the job that finds the greatest field around each cell of the map, if it is wanted and not known.
+    pub(super) fn update_bound(
+        &mut self,
+        context: &Context<'_>,
+        is_wanted: bool,
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), GpuError> {
+        if !is_wanted {
+            self.bound = None;
+            return Ok(());
+        }
+        let (Some(map), false) = (self.joined.last(), self.bound.is_some() && !self.bound_is_stale) else {
+            return Ok(());
+        };
+        let texture = Texture::new_2d(context.gpu, "weather_bound", [CELLS; 2], wgpu::TextureFormat::R32Float)?;
+        let bound = vec![
+            ("weather_map", wgpu::BindingResource::TextureView(&map.view)),
+            ("bound_out", wgpu::BindingResource::TextureView(&texture.view)),
+        ];
+        let key = ProgramKey::plain("pass/weather_bound.wgsl");
+        jobs.push(context.whole("weather_map", &key, &bound, Extent::image([CELLS; 2]))?);
+        self.bound = Some(texture);
+        self.bound_is_stale = false;
+        Ok(())
+    }
+
+    /// Everything that exists, by the name shaders give it.
+    pub(super) fn resources(&self) -> Bound<'_> {
+        let named = [("weather_map", self.joined.last()), ("weather_bound", self.bound.as_ref())];
+        let existing = named.into_iter().filter_map(|(name, texture)| Some((name, texture?)));
+        existing.map(|(name, texture)| (name, wgpu::BindingResource::TextureView(&texture.view))).collect()
     }
 
     fn join(
@@ -111,11 +151,6 @@ impl WeatherMap {
         Ok(())
     }
 
-    /// The map, once there is one.
-    pub(super) fn texture(&self) -> Option<&Texture> {
-        self.joined.last()
-    }
-
     /// Forgets everything, as when no cloud is drawn.
     pub(super) fn clear(&mut self) {
         *self = Self::new();
@@ -123,7 +158,8 @@ impl WeatherMap {
 
     /// Device memory in bytes.
     pub(super) fn bytes(&self) -> u64 {
-        self.states.iter().map(|state| state.texture.bytes()).chain(self.joined.iter().map(Texture::bytes)).sum()
+        let states = self.states.iter().map(|state| &state.texture);
+        states.chain(&self.joined).chain(&self.bound).map(Texture::bytes).sum()
     }
 }
 

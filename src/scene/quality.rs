@@ -48,11 +48,11 @@ params! {
         /// Most steps along a view ray.
         view_steps: u32 = 160, 4..=1024, None;
         /// Length of the first step inside cloud.
-        step_m: f32 = 34.0, 1.0..=1000.0, Metres, logarithmic;
+        step_m: f32 = 45.0, 1.0..=1000.0, Metres, logarithmic;
         /// Growth of the step with distance: metres more per metre.
-        step_growth: f32 = 0.006, 0.0..=0.1, None;
+        step_growth: f32 = 0.009, 0.0..=0.1, None;
         /// Optical depth of a step inside dense cloud; the step is never longer than its length by distance.
-        step_depth: f32 = 1.0, 0.02..=10_000.0, None, logarithmic;
+        step_depth: f32 = 1.3, 0.02..=10_000.0, None, logarithmic;
         /// Length of a step in clear air relative to one in cloud.
         empty_stride: f32 = 3.0, 1.0..=8.0, None;
         /// Greatest distance at which clouds are drawn.

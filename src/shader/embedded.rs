@@ -51,6 +51,7 @@ files! {
     "pass/terrain.wgsl",
     "pass/tonemap.wgsl",
     "pass/weather_blend.wgsl",
+    "pass/weather_bound.wgsl",
     "pass/weather_map.wgsl",
     "test/eval_density.wgsl",
     "test/eval_field.wgsl",
