@@ -2,14 +2,13 @@
 #![allow(missing_docs, reason = "tests")]
 #![allow(clippy::cast_possible_truncation, reason = "texel counts are small")]
 
-use std::f32::consts::PI;
 use std::sync::Mutex;
 
 use glam::{DVec3, Vec3, Vec4};
 use nephoscope::gpu::{Gpu, ProgramCache, ProgramKey, ShaderTable, Texture, job, readback};
 use nephoscope::reference::air::Air;
 use nephoscope::render::pass::sky::{SkyInputs, SkyTables, programs};
-use nephoscope::render::uniforms::air::{AirUniforms, SUN_ILLUMINANCE_LX, solar_tint};
+use nephoscope::render::uniforms::air::AirUniforms;
 use wgpu::util::DeviceExt as _;
 
 const TABLE: ShaderTable = ShaderTable { flags: &[], structs: &[AirUniforms::GENERATED] };
