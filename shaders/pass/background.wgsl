@@ -99,7 +99,7 @@ fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
     before = t;
     t += max(clearance * 0.7, 40.0 + 0.08 * t);
   }
-  for (var k = 0u; k < 7u && is_hit; k++) {
+  for (var k = 0u; k < 5u && is_hit; k++) {
     let middle = 0.5 * (before + t);
     let is_above = clearance_at(origin + dir * middle, middle) > 0.0;
     before = select(before, middle, is_above);

@@ -10,7 +10,7 @@
 const PLAIN_M: f32 = 800.0;
 const RELIEF_FROM_M: f32 = 7000.0;
 // Distance to which the small copy of the relief is read.
-const FINE_RELIEF_M: f32 = 5000.0;
+const FINE_RELIEF_M: f32 = 2500.0;
 
 // Height above sea level, seen from a distance: ranges, hills between them, and near the eye the same again, small, so
 // that near slopes are not smooth.

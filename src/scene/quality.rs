@@ -68,7 +68,7 @@ params! {
         /// Octaves of multiple scattering on top of the first. 0 is true single scattering.
         octaves: u32 = 5, 0..=7, None;
         /// Transmittance below which a ray ends.
-        early_exit: f32 = 0.01, 0.0..=0.2, None;
+        early_exit: f32 = 0.02, 0.0..=0.2, None;
         /// Distance at which the small noise has faded to its mean.
         detail_distance_m: f32 = 20_000.0, 100.0..=500_000.0, Metres, logarithmic;
         /// Coarser (above 0) or finer mip levels of the noises with distance.
