@@ -94,6 +94,8 @@ fn scene(settings: Settings, row: &Published) -> Scene {
             top_m: 2000.0,
             // Each sample reads the map and two 3D textures (section 3.1); the curl noise would be a third.
             curl_m: 0.0,
+            // The thesis states no coefficient; this makes clouds as soft as in its figures.
+            scattering_per_m: 0.02,
             shadow_extinction_scale: 0.4,
             phase: Phase { kind: PhaseKind::HenyeyGreenstein, g: 0.7, ..Phase::default() },
             ..CloudLayer::default()
