@@ -4,6 +4,7 @@
 // them. Heights h are 0 at the layer's base and 1 at its top. The chain is: profile -> billowed -> eroded -> density.
 #import "cloud/weather.wgsl"
 #import "common/math.wgsl"
+#import "generated/LayerUniforms.wgsl"
 
 // Mean of the erosion noise, to which it fades with distance.
 const MEAN_EROSION: f32 = 0.5;

@@ -1,6 +1,7 @@
 // The density model of Koblížek, "Volumetric clouds" (2019), section 2.1: cloud map times height function times layered
 // Worley noise, minus a threshold, minus detail. Heights h are 0 at the layer's base and 1 at its top.
 #import "cloud/weather.wgsl"
+#import "generated/LayerUniforms.wgsl"
 
 const THESIS_THRESHOLD: f32 = 0.2;
 

@@ -3,8 +3,6 @@
 // Red, green and blue hold how deep inside a cumulus, stratus or stratocumulus field a place lies, 0..1; coverage is a
 // threshold on their sum, applied here, so that it can change from place to place and under a slider without a bake.
 // Alpha is a slow variation that makes some fields tower and others stay low.
-#import "generated/LayerUniforms.wgsl"
-
 struct Weather {
   // How far inside a cloud, 0 outside to 1 in the middle.
   body: f32,
@@ -14,8 +12,12 @@ struct Weather {
   variation: f32,
 }
 
-fn weather_from_texel(texel: vec4f, layer: LayerUniforms, bias: f32) -> Weather {
+// Body of a field 0..1: `cover` is the factor and the offset that coverage makes.
+fn body_of(field: f32, cover: vec2f) -> f32 {
+  return clamp(field * cover.x + cover.y, 0.0, 1.0);
+}
+
+fn weather_from_texel(texel: vec4f, cover: vec2f) -> Weather {
   let field = texel.r + texel.g + texel.b;
-  let body = clamp(field * layer.body_scale + bias, 0.0, 1.0);
-  return Weather(body, texel.rgb / max(field, 1e-4), texel.a);
+  return Weather(body_of(field, cover), texel.rgb / max(field, 1e-4), texel.a);
 }

@@ -108,6 +108,16 @@ fn map_uv(layer: LayerUniforms, p: vec2f, h: f32) -> vec2f {
   return (p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
 }
 
+// The greatest body where the map's field is at most so much.
+fn greatest_body(layer: LayerUniforms, field: f32) -> f32 {
+  let body = body_of(field, vec2f(layer.body_scale, layer.body_bias));
+#if FRONT
+  return max(body, body_of(field, vec2f(layer.body_scale_beyond, layer.body_bias_beyond)));
+#else
+  return body;
+#endif
+}
+
 // Called where the map has no body: asks for how far.
 fn note_clear(layer: LayerUniforms, p: vec2f, h: f32) {
   var way = 0.0;
@@ -116,11 +126,7 @@ fn note_clear(layer: LayerUniforms, p: vec2f, h: f32) {
   let uv = map_uv(layer, p, h);
   let cells = vec2f(textureDimensions(weather_bound));
   let bound = textureLoad(weather_bound, vec2u(min((uv - floor(uv)) * cells, cells - 1.0)), 0).x;
-  var bias = layer.body_bias;
-#if FRONT
-  bias = max(bias, layer.body_bias_beyond);
-#endif
-  way = select(0.0, SAFE_CELL / (layer.map_from_world.z * cells.x), bound * layer.body_scale + bias <= 0.0);
+  way = select(0.0, SAFE_CELL / (layer.map_from_world.z * cells.x), greatest_body(layer, bound) <= 0.0);
 #endif
   clear_way = min(clear_way, way);
 }
@@ -137,12 +143,12 @@ fn map_texel(layer: LayerUniforms, p: vec2f, h: f32) -> vec4f {
 }
 
 fn weather_at(layer: LayerUniforms, p: vec2f, h: f32) -> Weather {
-  var bias = layer.body_bias;
+  var cover = vec2f(layer.body_scale, layer.body_bias);
 #if FRONT
   let ahead = (dot(p, scene.front.xy) - scene.front.w) * scene.front.z + 0.5;
-  bias = mix(bias, layer.body_bias_beyond, smoothstep(0.0, 1.0, ahead));
+  cover = mix(cover, vec2f(layer.body_scale_beyond, layer.body_bias_beyond), smoothstep(0.0, 1.0, ahead));
 #endif
-  return weather_from_texel(map_texel(layer, p, h), layer, bias);
+  return weather_from_texel(map_texel(layer, p, h), cover);
 }
 
 // Where the small noise has faded by this much, nobody sees that it was dragged.

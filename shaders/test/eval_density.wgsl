@@ -20,7 +20,7 @@ struct Place {
 fn place(id: vec3u) -> Place {
   let layer = layers[id.x];
   let d = bitcast<vec4f>(cases[id.x].d);
-  let weather = weather_from_texel(bitcast<vec4f>(cases[id.x].a), layer, d.z);
+  let weather = weather_from_texel(bitcast<vec4f>(cases[id.x].a), vec2f(layer.body_scale, d.z));
   return Place(weather, layer, bitcast<vec4f>(cases[id.x].b), bitcast<vec4f>(cases[id.x].c), d.x, d.y);
 }
 

@@ -43,10 +43,20 @@ fn noise_from_world(size_m: f32, eye: &Eye, drift_m: DVec3) -> Vec4 {
     Vec4::new(wrapped(tiles.x), wrapped(tiles.y), wrapped(tiles.z), (1.0 / size_m) as f32)
 }
 
-/// Scale and offset that make a body of the map's field, for a share of the sky.
-fn body(coverage: f32, softness: f32) -> (f32, f32) {
-    let coverage = coverage.clamp(0.0, 1.0);
-    (1.0 / softness, -(1.0 - coverage * (1.0 + softness)) / softness)
+/// Scale and offset that make a body of the map's field where clouds cover a share of the sky.
+///
+/// The thesis's coverage is the radius of the cells (Koblížek 2019, section 2.1.1): clouds grow round their middles, which
+/// stay as deep as ever. The others lower a threshold under the field, whose edge is as soft as the layer says.
+fn body(layer: &CloudLayer, coverage: f32) -> (f32, f32) {
+    let coverage = (coverage + layer.coverage_offset).clamp(0.0, 1.0);
+    match layer.model {
+        DensityModel::Thesis if coverage > 0.0 => (1.0 / coverage, 1.0 - 1.0 / coverage),
+        DensityModel::Thesis => (0.0, 0.0),
+        DensityModel::Profile | DensityModel::Uniform => {
+            let softness = layer.edge_softness;
+            (1.0 / softness, -(1.0 - coverage * (1.0 + softness)) / softness)
+        }
+    }
 }
 
 fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) -> LayerUniforms {
@@ -57,8 +67,8 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
     };
     let thickness_m = (layer.top_m - layer.base_m).max(1.0);
     let downwind = wind_mps(&scene.wind).normalize_or_zero() * f64::from(layer.lean_m);
-    let coverage = |value: f32| body(value + layer.coverage_offset, layer.edge_softness);
-    let (body_scale, body_bias) = coverage(scene.weather.coverage);
+    let (body_scale, body_bias) = body(layer, scene.weather.coverage);
+    let (body_scale_beyond, body_bias_beyond) = body(layer, scene.weather.coverage_change_to);
     let curl = noise_from_world(layer.curl_size_m, eye, drift(scene.wind.detail_speed, 0.0));
     LayerUniforms {
         map_from_world: map_from_world(scene, layer, eye, time_secs),
@@ -76,7 +86,7 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
         top_variation: layer.top_variation,
         body_scale,
         body_bias,
-        body_bias_beyond: coverage(scene.weather.coverage_change_to).1,
+        body_bias_beyond,
         anvil: layer.anvil,
         shape_strength: layer.shape_strength,
         detail_strength: layer.detail_strength,
@@ -104,7 +114,7 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
         g: layer.phase.g,
         back_g: layer.phase.back_g,
         back_mix: layer.phase.back_mix,
-        pad0: 0.0,
+        body_scale_beyond,
     }
 }
 
@@ -196,15 +206,28 @@ mod tests {
         assert!((velocity - DVec2::new(10.0, 0.0)).length() < 1e-9, "{velocity}");
     }
 
+    fn body_at(model: DensityModel, coverage: f32, field: f32) -> f32 {
+        let (scale, bias) = body(&CloudLayer { model, edge_softness: 0.25, ..CloudLayer::default() }, coverage);
+        (field * scale + bias).clamp(0.0, 1.0)
+    }
+
     #[test]
     fn coverage_is_a_threshold() {
-        let at = |coverage: f32, field: f32| {
-            let (scale, bias) = body(coverage, 0.25);
-            (field * scale + bias).clamp(0.0, 1.0)
-        };
+        let at = |coverage, field| body_at(DensityModel::Profile, coverage, field);
         assert_eq!(at(0.0, 1.0), 0.0, "coverage 0 is empty");
         assert_eq!(at(1.0, 0.0), 1.0, "coverage 1 is full");
         assert!(at(0.5, 0.6) > at(0.4, 0.6), "more coverage, more body");
+    }
+
+    #[test]
+    fn coverage_of_the_thesis_is_a_radius() {
+        let at = |coverage, field| body_at(DensityModel::Thesis, coverage, field);
+        assert_eq!(at(0.0, 1.0), 0.0, "coverage 0 is empty");
+        for coverage in [0.1, 0.5, 1.0] {
+            assert_eq!(at(coverage, 1.0), 1.0, "a cloud's middle is as deep at any coverage");
+            assert!(at(coverage, 1.0 - coverage).abs() < 1e-6, "its edge lies at the radius");
+        }
+        assert_eq!(at(1.0, 0.4), 0.4, "coverage 1 is the map itself, not a closed sheet");
     }
 
     #[test]

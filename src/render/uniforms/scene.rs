@@ -96,7 +96,7 @@ gpu_struct! {
         pub body_scale: f32,
         /// Offset from map to body: minus the threshold that coverage sets.
         pub body_bias: f32,
-        /// The same beyond the front.
+        /// Offset beyond the front.
         pub body_bias_beyond: f32,
         /// Spread of the tops.
         pub anvil: f32,
@@ -130,8 +130,8 @@ gpu_struct! {
         pub back_g: f32,
         /// Share of its second lobe.
         pub back_mix: f32,
-        /// Keeps the size a multiple of 16 bytes.
-        pub pad0: f32,
+        /// Factor from map to body beyond the front.
+        pub body_scale_beyond: f32,
     }
 
     /// All cloud layers, the light on them, and how they are marched.
