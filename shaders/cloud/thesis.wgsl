@@ -10,13 +10,14 @@ fn trapezoid(h: f32, abcd: vec4f) -> f32 {
   return smoothstep(abcd.x, abcd.y, h) * (1.0 - smoothstep(abcd.z, abcd.w, h));
 }
 
-// Chance of cloud by height for cumulus, stratus, stratocumulus (figure 2.3).
+// Where clouds of a type begin, are densest, and end (figure 2.3).
+const THESIS_CUMULUS: vec4f = vec4f(0.0, 0.12, 0.35, 1.0);
+const THESIS_STRATUS: vec4f = vec4f(0.0, 0.06, 0.14, 0.26);
+const THESIS_STRATOCUMULUS: vec4f = vec4f(0.0, 0.12, 0.30, 0.58);
+
+// Chance of cloud by height for cumulus, stratus, stratocumulus.
 fn thesis_heights(h: f32) -> vec3f {
-  return vec3f(
-    trapezoid(h, vec4f(0.0, 0.12, 0.35, 1.0)),
-    trapezoid(h, vec4f(0.0, 0.06, 0.14, 0.26)),
-    trapezoid(h, vec4f(0.0, 0.12, 0.30, 0.58)),
-  );
+  return vec3f(trapezoid(h, THESIS_CUMULUS), trapezoid(h, THESIS_STRATUS), trapezoid(h, THESIS_STRATOCUMULUS));
 }
 
 // Cloud map times height function for each type, 0 where both say that nothing can be there.

@@ -58,9 +58,6 @@ var<private> clearness: f32;
 // How far from the last place read, where it was clear, the map promises no cloud in any direction.
 var<private> clear_way: f32;
 
-// Part of a cell that is safe to cross although layers lean.
-const SAFE_CELL: f32 = 0.6;
-
 fn count_read() {
 #if COUNT
   counted_reads += 1u;
@@ -126,7 +123,7 @@ fn note_clear(layer: LayerUniforms, p: vec2f, h: f32) {
   let uv = map_uv(layer, p, h);
   let cells = vec2f(textureDimensions(weather_bound));
   let bound = textureLoad(weather_bound, vec2u(min((uv - floor(uv)) * cells, cells - 1.0)), 0).x;
-  way = select(0.0, SAFE_CELL / (layer.map_from_world.z * cells.x), greatest_body(layer, bound) <= 0.0);
+  way = select(0.0, layer.lean.z, greatest_body(layer, bound) <= 0.0);
 #endif
   clear_way = min(clear_way, way);
 }
@@ -252,6 +249,25 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
   }
 #endif
   return density * layer.density_scale;
+}
+
+// Densities of all layers at a place.
+fn densities_at(p: vec3f, reading: Reading) -> vec4f {
+  let altitude = altitude_of(p);
+  var densities = vec4f(0.0);
+  for (var i = 0u; i < LAYERS; i++) {
+    densities[i] = layer_density(i, p, altitude, reading);
+  }
+  return densities;
+}
+
+// Extinction of all layers together, in 1/m.
+fn extinction_of(densities: vec4f) -> f32 {
+  var extinction = 0.0;
+  for (var i = 0u; i < LAYERS; i++) {
+    extinction += densities[i] * scene.layers[i].extinction_per_m;
+  }
+  return extinction;
 }
 
 // Never below the density of a layer anywhere in a cell of the map, whose greatest body is given: the only majorant.

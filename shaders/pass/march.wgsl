@@ -3,29 +3,16 @@
 // Steps are short inside cloud and long outside, with a step back on entry (Koblížek 2019, section 3.1.4); each takes
 // the energy-conserving share 1 - exp(-x) of what is left (Hillaire 2016), from a stable series. The start is jittered
 // by the pixel alone, so that a still scene is a still picture.
-#import "cloud/scatter.wgsl"
-#import "cloud/phase.wgsl"
 #import "common/camera.wgsl"
 #import "common/update.wgsl"
 #import "generated/BandUniforms.wgsl"
-#import "pass/cloud_field.wgsl"
-#import "light/sky.wgsl"
-
-override OCTAVES: u32 = 1u;
+#import "pass/cloud_light.wgsl"
 
 @group(0) @binding(0) var<uniform> view: ViewUniforms;
 @group(0) @binding(1) var<uniform> band: BandUniforms;
 @group(0) @binding(2) var blue_noise: texture_2d<f32>;
 #if GROUND
 @group(0) @binding(3) var ground_distance: texture_2d<f32>;
-#endif
-// Behind the scene's uniform: llvmpipe (Mesa 22.3) crashes when a dynamically indexed block is its fourth.
-@group(1) @binding(12) var<uniform> air: AirUniforms;
-@group(0) @binding(6) var sky_transmittance: texture_2d<f32>;
-@group(0) @binding(7) var sky_ambient: texture_2d<f32>;
-#if AIR
-@group(0) @binding(8) var sky_aerial_light: texture_3d<f32>;
-@group(0) @binding(9) var sky_aerial_transmittance: texture_3d<f32>;
 #endif
 #if FLOAT
 @group(2) @binding(0) var cloud_out: texture_storage_2d<rgba32float, write>;
@@ -36,9 +23,6 @@ override OCTAVES: u32 = 1u;
 #if COUNT
 @group(2) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;
 #endif
-
-// Phase function of each layer and octave, the same all along the ray: the light is far away.
-var<private> phases: array<f32, 32>;
 
 struct Seen {
   light: vec3f,
@@ -68,69 +52,14 @@ var<private> key_light: vec3f;
 var<private> key_light_altitude: f32;
 var<private> key_light_distance: f32;
 
-fn key_light_at(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
+fn key_light_near(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
   let moved = abs(altitude - key_light_altitude) > 150.0 || distance_m > key_light_distance;
   if (moved) {
-    let cosine = light_cos_zenith(p, scene.towards_light, scene.planet_radius_m);
-    key_light = scene.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
+    key_light = key_light_at(p, altitude);
     key_light_altitude = altitude;
     key_light_distance = distance_m * 1.1 + 500.0;
   }
   return key_light;
-}
-
-// Ambient light of the whole sky: from above, from below. The same all along the ray.
-var<private> ambient_above: vec3f;
-var<private> ambient_below: vec3f;
-
-// Light of all layers at a place that has cloud, sent to the eye per unit of optical depth.
-fn source_at(p: vec3f, altitude: f32, distance_m: f32, densities: vec4f) -> vec3f {
-  var octaves: array<f32, 8>;
-  let light = key_light_at(p, altitude, distance_m);
-  let depth = sun_optical_depth(p, noise_level(distance_m));
-#if COUNT
-  atomicAdd(&counters[2], scene.light_steps);
-#endif
-  var scale = 1.0;
-  var energy = 1.0;
-  for (var o = 0u; o <= OCTAVES; o++) {
-    octaves[o] = octave_weight(depth, scale, energy);
-    scale *= scene.octave_extinction;
-    energy *= scene.octave_energy;
-  }
-  let extinction = extinction_of(densities);
-  var source = vec3f(0.0);
-  for (var i = 0u; i < LAYERS; i++) {
-    let layer = scene.layers[i];
-    let share = densities[i] * layer.extinction_per_m / extinction * layer.albedo;
-    var scattered = 0.0;
-    for (var o = 0u; o <= OCTAVES; o++) {
-      scattered += octaves[o] * phases[i * 8u + o];
-    }
-    let h = clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0);
-    let above = ambient_share(h, scene.ambient_base_share, densities[i], scene.ambient_occlusion);
-    let around = ambient_above * above + ambient_below * (1.0 - h) * exp(-densities[i] * scene.ambient_occlusion);
-    source += share * (light * scattered * layer.sun_gain + around * layer.ambient_gain);
-  }
-  return source;
-}
-
-fn extinction_of(densities: vec4f) -> f32 {
-  var extinction = 0.0;
-  for (var i = 0u; i < LAYERS; i++) {
-    extinction += densities[i] * scene.layers[i].extinction_per_m;
-  }
-  return extinction;
-}
-
-// Densities of the layers at a place on the ray.
-fn densities_at(p: vec3f, reading: Reading) -> vec4f {
-  let altitude = altitude_of(p);
-  var densities = vec4f(0.0);
-  for (var i = 0u; i < LAYERS; i++) {
-    densities[i] = layer_density(i, p, altitude, reading);
-  }
-  return densities;
 }
 
 fn step_at(distance_m: f32) -> f32 {
@@ -155,7 +84,12 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
   for (var k = 0u; k < waiting_count; k++) {
     let t = waiting_distance[k];
     let p = origin + dir * t;
-    let source = source_at(p, altitude_of(p), t, waiting_densities[k]);
+    let altitude = altitude_of(p);
+    let depth = sun_optical_depth(p, noise_level(t));
+#if COUNT
+    atomicAdd(&counters[2], scene.light_steps);
+#endif
+    let source = source_of(key_light_near(p, altitude, t), depth, altitude, waiting_densities[k]);
 #if AIR
     let ahead = air_before(dir, t);
     light += waiting_share[k] * (ahead.transmittance * source + ahead.light);
@@ -254,17 +188,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 #endif
   var seen = Seen(vec3f(0.0), 1.0, 0.0, 0.0);
   if (segments.first.y > segments.first.x && segments.first.x < limit) {
-    for (var i = 0u; i < LAYERS; i++) {
-      let layer = scene.layers[i];
-      let shape = PhaseShape(layer.phase_kind, layer.g, layer.back_g, layer.back_mix);
-      var anisotropy = 1.0;
-      for (var o = 0u; o <= OCTAVES; o++) {
-        phases[i * 8u + o] = phase_scaled(shape, anisotropy, dir, scene.towards_light);
-        anisotropy *= scene.octave_anisotropy;
-      }
-    }
-    ambient_above = textureLoad(sky_ambient, vec2u(0u, 0u), 0).rgb * scene.ambient_top;
-    ambient_below = textureLoad(sky_ambient, vec2u(1u, 0u), 0).rgb * scene.ambient_bottom;
+    prepare_light(dir);
     let jitter = textureLoad(blue_noise, pixel % textureDimensions(blue_noise), 0).x * view.jitter.x + view.jitter.y;
     steps_left = scene.view_steps;
     key_light_altitude = -1e9;

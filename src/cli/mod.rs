@@ -7,6 +7,7 @@ mod bench;
 mod editor;
 mod error;
 mod info;
+mod integrate;
 mod json;
 mod presets;
 mod render;

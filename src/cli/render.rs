@@ -9,6 +9,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::error::Usage;
+use super::integrate::{Integration, converge, describe};
 use super::json::Json;
 use super::{Device, Edits, args, print};
 use crate::export::ExportError;
@@ -17,6 +18,7 @@ use crate::files::{self, About, save_exr, save_png};
 use crate::gpu::Gpu;
 use crate::images::pattern::{FramePattern, parse_frame_range};
 use crate::render::Renderer;
+use crate::render::truth::Goal;
 use crate::scene::edit;
 use crate::scene::{Frame, Output, Preset, Projection, Quality, UpdateFraction};
 
@@ -51,6 +53,8 @@ pub(super) struct RenderArgs {
     /// Quality: draft, preview, high, final, or a .ron file; as the sky says if not given.
     #[arg(long)]
     quality: Option<String>,
+    #[command(flatten)]
+    integration: Integration,
     /// Only clouds, with their opacity as alpha (EXR).
     #[arg(long)]
     clouds_only: bool,
@@ -113,6 +117,7 @@ impl RenderArgs {
             fps: 24.0,
             overwrite: false,
             quality: None,
+            integration: Integration::default(),
             clouds_only: false,
             depth: None,
             compression: CompressionArg::Zip,
@@ -150,6 +155,7 @@ struct Job {
     quality: Quality,
     format: Format,
     output: Output,
+    goal: Option<Goal>,
     /// File and time of each picture.
     pictures: Vec<(PathBuf, f64)>,
 }
@@ -185,7 +191,9 @@ impl Job {
             (Format::Exr, false) => Output::Linear,
             (Format::Exr, true) => Output::CloudsAlone,
         };
-        Ok(Self { preset, quality, format, output, pictures: pictures(args)? })
+        let is_final = args.quality.as_deref().is_some_and(|quality| quality.eq_ignore_ascii_case("final"));
+        let goal = args.integration.goal(is_final)?;
+        Ok(Self { preset, quality, format, output, goal, pictures: pictures(args)? })
     }
 }
 
@@ -264,16 +272,23 @@ pub(super) fn run(args: &RenderArgs) -> Result<()> {
 fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, time_secs): (&Path, f64)) -> Result<()> {
     let Job { preset, quality, output, .. } = job;
     let frame = Frame { scene: &preset.scene, quality, size: args.size, time_secs, output: *output };
-    renderer.render(&frame).with_context(|| format!("{} could not be rendered", path.display()))?;
     let about = About { preset, quality, time_secs };
-    match job.format {
-        Format::Png => {
-            let (size, rgba) = renderer.display_rgba8()?;
-            save_png(path, size, &rgba, &about)?;
+    let failed = || format!("{} could not be rendered", path.display());
+    let (display, linear) = match job.goal {
+        None => {
+            renderer.render(&frame).with_context(failed)?;
+            (renderer.display_rgba8()?, (job.format == Format::Exr).then(|| renderer.linear()).transpose()?)
         }
-        Format::Exr => {
-            save_exr(path, &renderer.linear()?, &about, args.exr_options())?;
+        Some(goal) => {
+            let mut truth = converge(renderer, &frame, goal).with_context(failed)?;
+            let picture = truth.picture(renderer)?;
+            eprintln!("{}: {}", path.display(), describe(goal, &truth.progress()));
+            (truth.display_rgba8(renderer)?, Some(picture.image))
         }
+    };
+    match (job.format, linear) {
+        (Format::Exr, Some(linear)) => save_exr(path, &linear, &about, args.exr_options()).map(|_| ())?,
+        _ => save_png(path, display.0, &display.1, &about)?,
     }
     Ok(())
 }

@@ -36,6 +36,12 @@ impl Job {
         Self { rows, ..self }
     }
 
+    /// The same over another number of workgroups.
+    #[must_use]
+    pub fn with_grid(self, grid: [u32; 3]) -> Self {
+        Self { grid, ..self }
+    }
+
     fn record(&self, encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>) {
         let descriptor = wgpu::ComputePassDescriptor { label: Some(self.pass), timestamp_writes: timestamps };
         let mut pass = encoder.begin_compute_pass(&descriptor);

@@ -12,8 +12,21 @@ pub use light::{KeyLight, Lighting};
 pub use reasons::Reason;
 pub use variant::MarchVariant;
 
+use crate::choices;
 use crate::scene::{Frame, Output, Projection, Scene, ToneMap, UpdateFraction};
 use reasons::Reasons;
+
+choices! {
+    /// How the light of clouds is found. All three read the same density and the same phase functions.
+    pub enum Integrator {
+        /// The march: as fast as its quality allows.
+        Realtime ("Realtime"),
+        /// The march's model with steps so short that they no longer matter.
+        Converged ("Converged"),
+        /// All orders of scattering, without bias.
+        PathTraced ("Path traced"),
+    }
+}
 
 /// Whether and how the ground is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +58,8 @@ pub struct FramePlan {
     pub alone: bool,
     /// How light becomes display colour.
     pub tone_map: ToneMap,
+    /// Whether clouds are found by tracking, which needs bounds of their density.
+    pub tracks: bool,
     /// Why each entry is as it is.
     pub reasons: Vec<Reason>,
 }
@@ -69,8 +84,14 @@ impl FramePlan {
             float: frame.output != Output::Display,
             alone: frame.output == Output::CloudsAlone,
             tone_map: scene.display.tone_map,
+            tracks: false,
             reasons: why.0,
         }
+    }
+
+    /// The plan of a frame whose clouds a reference integrator finds: all pixels, at the frame's own size.
+    pub fn for_truth(frame: &Frame<'_>, integrator: Integrator) -> Self {
+        Self { temporal: None, tracks: integrator == Integrator::PathTraced, ..Self::new(frame) }
     }
 }
 

@@ -14,6 +14,7 @@ mod passes;
 mod schedule;
 pub mod shaders;
 mod targets;
+pub mod truth;
 pub mod uniforms;
 mod weather;
 

@@ -2,8 +2,6 @@
 
 use super::context::{Bound, Context, Extent};
 use super::targets::{CloudTarget, Targets};
-use super::uniforms::other::GroundUniforms;
-use super::uniforms::scene::{SceneUniforms, ViewUniforms};
 use crate::gpu::{GpuError, Job, ProgramKey};
 use crate::plan::{FramePlan, MarchVariant};
 use crate::scene::ToneMap;
@@ -19,7 +17,7 @@ pub(super) struct FrameBuffers {
 }
 
 impl FrameBuffers {
-    fn resources(&self) -> Bound<'_> {
+    pub(super) fn resources(&self) -> Bound<'_> {
         let mut bound: Bound<'_> = vec![
             ("view", self.view.as_entire_binding()),
             ("scene", self.scene.as_entire_binding()),
@@ -30,22 +28,6 @@ impl FrameBuffers {
             bound.push(("shafts", shafts.as_entire_binding()));
         }
         bound
-    }
-
-    pub(super) fn new(
-        context: &Context<'_>,
-        view: &ViewUniforms,
-        scene: &SceneUniforms,
-        ground: &GroundUniforms,
-    ) -> Self {
-        let uniform = |label, bytes| context.gpu.uniform(label, bytes);
-        Self {
-            view: uniform("view", bytemuck::bytes_of(view)),
-            scene: uniform("scene", bytemuck::bytes_of(scene)),
-            ground: uniform("ground", bytemuck::bytes_of(ground)),
-            display: uniform("display", &[0; 32]),
-            shafts: None,
-        }
     }
 }
 
@@ -60,11 +42,11 @@ pub(super) struct Passes<'a> {
     pub(super) jobs: Vec<Job>,
 }
 
-fn view_of(texture: &crate::gpu::Texture) -> wgpu::BindingResource<'_> {
+pub(super) fn view_of(texture: &crate::gpu::Texture) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(&texture.view)
 }
 
-fn field_key(file: &'static str, march: MarchVariant) -> ProgramKey {
+pub(super) fn field_key(file: &'static str, march: MarchVariant) -> ProgramKey {
     ProgramKey::plain(file)
         .with_flags(march.field_flags())
         .with_constant("DOMAIN", march.domain_index())
@@ -142,7 +124,7 @@ fn shafts_mask_key(plan: &FramePlan) -> ProgramKey {
 }
 
 impl<'a> Passes<'a> {
-    fn bound(&self, own: &[(&'static str, wgpu::BindingResource<'a>)]) -> Bound<'a> {
+    pub(super) fn bound(&self, own: &[(&'static str, wgpu::BindingResource<'a>)]) -> Bound<'a> {
         let mut bound = self.shared.clone();
         bound.extend(self.buffers.resources());
         bound.extend_from_slice(own);

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use glam::{UVec2, Vec2, Vec3};
 
-use super::context::Context;
+use super::context::{Bound, Context};
 use super::passes::{FrameBuffers, Passes};
 use super::targets::{Targets, ray_count};
 use super::uniforms::scene::ViewUniforms;
@@ -31,47 +31,23 @@ impl Renderer {
         slice_ms: Option<f64>,
         counters: Option<&wgpu::Buffer>,
     ) -> Result<(Vec<Job>, usize), RenderError> {
-        let scene = frame.scene;
-        let lighting = Lighting::new(scene);
-        let eye = Eye::new(&scene.camera);
-        let size = frame.render_size();
-        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms };
-
-        let mut jobs = Vec::new();
-        self.sky.update(&self.gpu, &self.programs, &uniforms::sky_inputs(scene, &lighting), &mut jobs)?;
-        self.bakes.update(&context, &plan, scene.ground.seed, &mut jobs)?;
-        if plan.march.is_some() {
-            self.weather.update(&context, &scene.weather, frame.time_secs, &mut jobs)?;
-            self.weather.update_bound(&context, plan.march.is_some_and(|march| march.skip), &mut jobs)?;
-        } else {
-            self.weather.clear();
-        }
+        let mut jobs = self.schedule_bakes(frame, &plan, slice_ms)?;
         let bake_jobs = jobs.len();
 
+        let lighting = Lighting::new(frame.scene);
+        let eye = Eye::new(&frame.scene.camera);
+        let size = frame.render_size();
+        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms };
         let (targets, is_new) = Targets::fitting(self.targets.take(), &self.gpu, &plan, size)?;
-        let targets = &*self.targets.insert(targets);
         let key = HistoryKey::new(frame);
         let usable = self.history.take().filter(|history| !is_new && is_continued(history, &key, frame, &eye));
         let phase = next_phase(usable.as_ref());
         let view = view_uniforms(frame, &plan, &eye, usable.as_ref(), &lighting);
-        let shadow_px = plan.ground.and_then(|ground| ground.shadow_px).unwrap_or(1);
-        let mut buffers = FrameBuffers::new(
-            &context,
-            &view,
-            &uniforms::scene_uniforms(frame, &lighting, &eye),
-            &uniforms::ground_uniforms(scene, &lighting, &eye, shadow_px),
-        );
-        buffers.display =
-            self.gpu.uniform("display", bytemuck::bytes_of(&uniforms::display_uniforms(scene, &lighting)));
-        buffers.shafts = plan.sunshafts.map(|samples| {
-            self.gpu.uniform("shafts", bytemuck::bytes_of(&uniforms::shaft_uniforms(scene, &lighting, samples)))
-        });
-
-        let mut shared = self.bakes.resources();
-        shared.extend(self.sky.resources());
-        shared.extend(self.weather.resources());
+        let buffers = frame_buffers(&context, frame, &plan, &view);
+        let shared = self.shared_resources();
         let display = &targets.display[self.display_side];
-        let mut passes = Passes { context: &context, plan: &plan, targets, shared, buffers: &buffers, jobs };
+        let mut passes =
+            Passes { context: &context, plan: &plan, targets: &targets, shared, buffers: &buffers, jobs: Vec::new() };
         passes.cloud_shadow()?;
         passes.background()?;
         let mut cloud = passes.march(counters)?;
@@ -84,12 +60,68 @@ impl Renderer {
         passes.sunshafts(cloud)?;
         passes.finish(cloud, display)?;
 
-        let jobs = passes.jobs;
+        jobs.append(&mut passes.jobs);
         let history = plan.temporal.map(|_| History { key, eye, time_secs: frame.time_secs, phase, side });
         let display = display.clone();
+        self.targets = Some(targets);
         self.pending = Some(Pending { plan, history, display, started: Instant::now(), times: Vec::new() });
         self.candela_per_unit = lighting.candela_per_unit;
         Ok((jobs, bake_jobs))
+    }
+
+    /// The jobs that make the sky tables, noises, relief and weather map a frame needs and has not got.
+    pub(super) fn schedule_bakes(
+        &mut self,
+        frame: &Frame<'_>,
+        plan: &FramePlan,
+        slice_ms: Option<f64>,
+    ) -> Result<Vec<Job>, RenderError> {
+        let scene = frame.scene;
+        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms };
+        let mut jobs = Vec::new();
+        let sky = uniforms::sky_inputs(scene, &Lighting::new(scene));
+        self.sky.update(&self.gpu, &self.programs, &sky, &mut jobs)?;
+        self.bakes.update(&context, plan, scene.ground.seed, &mut jobs)?;
+        match plan.march {
+            Some(march) => {
+                self.weather.update(&context, &scene.weather, frame.time_secs, &mut jobs)?;
+                self.weather.update_bounds(&context, (march.skip, plan.tracks), &mut jobs)?;
+            }
+            None => self.weather.clear(),
+        }
+        Ok(jobs)
+    }
+
+    /// Bakes, sky tables and weather map by the names that shaders give them.
+    pub(super) fn shared_resources(&self) -> Bound<'_> {
+        let mut shared = self.bakes.resources();
+        shared.extend(self.sky.resources());
+        shared.extend(self.weather.resources());
+        shared
+    }
+}
+
+/// The buffers that a frame's passes read.
+pub(super) fn frame_buffers(
+    context: &Context<'_>,
+    frame: &Frame<'_>,
+    plan: &FramePlan,
+    view: &ViewUniforms,
+) -> FrameBuffers {
+    let scene = frame.scene;
+    let lighting = Lighting::new(scene);
+    let eye = Eye::new(&scene.camera);
+    let shadow_px = plan.ground.and_then(|ground| ground.shadow_px).unwrap_or(1);
+    let uniform = |label, bytes| context.gpu.uniform(label, bytes);
+    FrameBuffers {
+        view: uniform("view", bytemuck::bytes_of(view)),
+        scene: uniform("scene", bytemuck::bytes_of(&uniforms::scene_uniforms(frame, &lighting, &eye))),
+        ground: uniform("ground", bytemuck::bytes_of(&uniforms::ground_uniforms(scene, &lighting, &eye, shadow_px))),
+        display: uniform("display", bytemuck::bytes_of(&uniforms::display_uniforms(scene, &lighting))),
+        shafts: plan.sunshafts.map(|samples| {
+            let shafts = uniforms::shaft_uniforms(scene, &lighting, samples);
+            context.gpu.uniform("shafts", bytemuck::bytes_of(&shafts))
+        }),
     }
 }
 
@@ -112,7 +144,7 @@ fn next_phase(history: Option<&History>) -> u32 {
 }
 
 #[allow(clippy::cast_possible_truncation, reason = "the way of the wind between two frames is short enough for f32")]
-fn view_uniforms(
+pub(super) fn view_uniforms(
     frame: &Frame<'_>,
     plan: &FramePlan,
     eye: &Eye,

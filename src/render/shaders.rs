@@ -2,7 +2,7 @@
 
 use super::uniforms::air::AirUniforms;
 use super::uniforms::other::{
-    BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, ReliefUniforms, ShaftUniforms,
+    BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, ReliefUniforms, ShaftUniforms, TruthUniforms,
 };
 use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
 use crate::gpu::ShaderTable;
@@ -10,8 +10,8 @@ use crate::gpu::ShaderTable;
 /// All flags and structs.
 pub const TABLE: ShaderTable = ShaderTable {
     flags: &[
-        "AIR", "ALONE", "BELOW", "CLOUDS", "COUNT", "CURL", "DETAIL", "FLOAT", "FRONT", "GROUND", "HISTORY", "PROFILE",
-        "SHADOW", "SHAFTS", "SKIP", "STARS", "TERRAIN", "THESIS", "UNIFORM",
+        "AIR", "ALONE", "BELOW", "CLOUDS", "COUNT", "CURL", "DETAIL", "EARTH", "FLOAT", "FRONT", "GROUND", "HISTORY",
+        "PATHS", "PROFILE", "SHADOW", "SHAFTS", "SKIP", "STARS", "TERRAIN", "THESIS", "UNIFORM",
     ],
     structs: &[
         AirUniforms::GENERATED,
@@ -22,6 +22,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         GroundUniforms::GENERATED,
         LayerUniforms::GENERATED,
         MapUniforms::GENERATED,
+        TruthUniforms::GENERATED,
         ReliefUniforms::GENERATED,
         SceneUniforms::GENERATED,
         ShaftUniforms::GENERATED,

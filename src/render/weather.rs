@@ -12,8 +12,11 @@ use crate::scene::{MapLayer, MapSource, Weather};
 
 /// Edge length of the map.
 const SIDE: u32 = 512;
-/// Cells across the map for which its greatest field is known.
-const CELLS: u32 = 64;
+/// Cells across the map for which the march knows its greatest field.
+pub(super) const CELLS: u32 = 64;
+/// The same for tracking, by the names that shaders give them.
+const TRACKING_CELLS: [(&str, u32); 4] =
+    [("bound_of_32", 32), ("bound_of_64", 64), ("bound_of_128", 128), ("bound_of_256", 256)];
 /// Largest user image.
 const LARGEST_IMAGE: u32 = 4096;
 /// States of a generated map in the time in which it becomes another; between two of them it is blended.
@@ -39,17 +42,15 @@ pub(super) struct WeatherMap {
     states: Vec<State>,
     /// The joined map of each layer over those below it; the last is the map.
     joined: Vec<Texture>,
-    /// The greatest field of the map around each of its cells, where rays skip by it.
-    bound: Option<Texture>,
-    /// Whether the map has changed since that was found.
-    bound_is_stale: bool,
+    /// The greatest field of the map around each of its cells, by name, where rays skip or track by it.
+    bounds: Vec<(&'static str, Texture)>,
     /// States and share that each joined map was made from.
     made_from: Vec<(StateKey, StateKey, f32)>,
 }
 
 impl WeatherMap {
     pub(super) fn new() -> Self {
-        Self { states: Vec::new(), joined: Vec::new(), bound: None, bound_is_stale: true, made_from: Vec::new() }
+        Self { states: Vec::new(), joined: Vec::new(), bounds: Vec::new(), made_from: Vec::new() }
     }
 
     /// Appends the jobs that bring the map to a time.
@@ -79,41 +80,43 @@ impl WeatherMap {
         }
         self.join(context, &wanted, jobs)?;
         self.made_from = wanted;
-        self.bound_is_stale = true;
+        self.bounds.clear();
         Ok(())
     }
 
-    /// Appends the job that finds the greatest field around each cell of the map, if it is wanted and not known.
-    pub(super) fn update_bound(
+    /// Appends the jobs that find the greatest field around each cell of the map, where that is wanted and not known.
+    pub(super) fn update_bounds(
         &mut self,
         context: &Context<'_>,
-        is_wanted: bool,
+        (skips, tracks): (bool, bool),
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
-        if !is_wanted {
-            self.bound = None;
-            return Ok(());
+        let skipping = skips.then_some(("weather_bound", CELLS));
+        let tracking = TRACKING_CELLS.into_iter().filter(|_| tracks);
+        let wanted: Vec<(&'static str, u32)> = skipping.into_iter().chain(tracking).collect();
+        self.bounds.retain(|(name, _)| wanted.iter().any(|(other, _)| name == other));
+        let Some(map) = self.joined.last() else { return Ok(()) };
+        for (name, cells) in wanted {
+            if self.bounds.iter().any(|(other, _)| *other == name) {
+                continue;
+            }
+            let texture = Texture::new_2d(context.gpu, name, [cells; 2], wgpu::TextureFormat::R32Float)?;
+            let bound = vec![
+                ("weather_map", wgpu::BindingResource::TextureView(&map.view)),
+                ("bound_out", wgpu::BindingResource::TextureView(&texture.view)),
+            ];
+            let key = ProgramKey::plain("pass/weather_bound.wgsl");
+            jobs.push(context.whole("weather_map", &key, &bound, Extent::image([cells; 2]))?);
+            self.bounds.push((name, texture));
         }
-        let (Some(map), false) = (self.joined.last(), self.bound.is_some() && !self.bound_is_stale) else {
-            return Ok(());
-        };
-        let texture = Texture::new_2d(context.gpu, "weather_bound", [CELLS; 2], wgpu::TextureFormat::R32Float)?;
-        let bound = vec![
-            ("weather_map", wgpu::BindingResource::TextureView(&map.view)),
-            ("bound_out", wgpu::BindingResource::TextureView(&texture.view)),
-        ];
-        let key = ProgramKey::plain("pass/weather_bound.wgsl");
-        jobs.push(context.whole("weather_map", &key, &bound, Extent::image([CELLS; 2]))?);
-        self.bound = Some(texture);
-        self.bound_is_stale = false;
         Ok(())
     }
 
     /// Everything that exists, by the name shaders give it.
     pub(super) fn resources(&self) -> Bound<'_> {
-        let named = [("weather_map", self.joined.last()), ("weather_bound", self.bound.as_ref())];
-        let existing = named.into_iter().filter_map(|(name, texture)| Some((name, texture?)));
-        existing.map(|(name, texture)| (name, wgpu::BindingResource::TextureView(&texture.view))).collect()
+        let map = self.joined.last().map(|map| ("weather_map", map));
+        let all = map.into_iter().chain(self.bounds.iter().map(|(name, texture)| (*name, texture)));
+        all.map(|(name, texture)| (name, wgpu::BindingResource::TextureView(&texture.view))).collect()
     }
 
     fn join(
@@ -159,7 +162,7 @@ impl WeatherMap {
     /// Device memory in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let states = self.states.iter().map(|state| &state.texture);
-        states.chain(&self.joined).chain(&self.bound).map(Texture::bytes).sum()
+        states.chain(&self.joined).chain(self.bounds.iter().map(|(_, bound)| bound)).map(Texture::bytes).sum()
     }
 }
 

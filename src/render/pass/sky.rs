@@ -269,6 +269,30 @@ impl SkyTables {
         Ok(())
     }
 
+    /// The sky in all directions as it is seen from another altitude: its table, the uniform it is read with, and the
+    /// job that makes it, which has to run after those of [`Self::update`].
+    ///
+    /// # Errors
+    /// [`GpuError`] if a shader does not compile.
+    pub fn seen_from(
+        &self,
+        gpu: &Gpu,
+        programs: &ProgramCache,
+        inputs: &SkyInputs,
+        altitude_m: f32,
+    ) -> Result<(Texture, wgpu::Buffer, Job), GpuError> {
+        let inputs = SkyInputs { eye_altitude_m: altitude_m, ..*inputs };
+        let air = gpu.uniform("cloud_air", bytemuck::bytes_of(&inputs.uniforms()));
+        let view = Texture::new_2d(gpu, "cloud_sky_view", VIEW_SIZE, wgpu::TextureFormat::Rgba16Float)?;
+        let mut resources = self.bake_resources();
+        resources.retain(|(name, _)| !matches!(*name, "air" | "sky_view_out"));
+        resources.push(("air", air.as_entire_binding()));
+        resources.push(("sky_view_out", wgpu::BindingResource::TextureView(&view.view)));
+        let program = programs.get(&ProgramKey::plain("pass/sky_view.wgsl"))?;
+        let job = program.job(gpu, "sky_view", &resources, tiles(VIEW_SIZE))?;
+        Ok((view, air, job))
+    }
+
     /// Device memory in bytes.
     pub fn bytes(&self) -> u64 {
         let tables = [

@@ -59,6 +59,16 @@ fn body(layer: &CloudLayer, coverage: f32) -> (f32, f32) {
     }
 }
 
+/// How far from a place the map's bound there holds in every direction.
+///
+/// The bound covers the place's cell and those around it, so a cell's width is safe on the map, less the texels that
+/// linear filtering reaches beyond it. A layer that leans shifts its map by `lean · h²`, at most 2 `lean` over its
+/// thickness for each metre of height.
+fn bound_reach_m(scene: &Scene, layer: &CloudLayer, thickness_m: f32) -> f32 {
+    let cell_m = scene.weather.size_m * layer.map_scale / super::super::weather::CELLS as f32;
+    0.9 * cell_m / (1.0 + 2.0 * layer.lean_m / thickness_m)
+}
+
 fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) -> LayerUniforms {
     let wind = wind_mps(&scene.wind) * f64::from(layer.wind_scale);
     let drift = |speed: f32, rise: f32| {
@@ -79,7 +89,7 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
             drift(scene.wind.detail_speed, scene.wind.rise_mps),
         ),
         curl_from_world: Vec4::new(curl.x, curl.z, curl.w, layer.curl_m / layer.detail_size_m),
-        lean: Vec4::new(downwind.x as f32, downwind.y as f32, 0.0, 0.0),
+        lean: Vec4::new(downwind.x as f32, downwind.y as f32, bound_reach_m(scene, layer, thickness_m), 0.0),
         base_m: layer.base_m,
         per_thickness: 1.0 / thickness_m,
         base_ramp: (200.0 / thickness_m).clamp(0.02, 0.3),

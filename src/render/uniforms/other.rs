@@ -107,6 +107,34 @@ gpu_struct! {
         pub samples: u32,
     }
 
+    /// What a reference integrator is told beside the scene.
+    pub struct TruthUniforms {
+        /// First row of the part of the picture whose rays or paths the buffers hold.
+        pub first_row: u32,
+        /// Most steps of a ray, or tracking events of a path, in one dispatch.
+        pub per_dispatch: u32,
+        /// Paths that each pixel is to have in the end.
+        pub samples: u32,
+        /// Most scatterings of a path; 1 is single scattering.
+        pub scattering_limit: u32,
+        /// Seed of the paths.
+        pub seed: u32,
+        /// Steps towards the light.
+        pub light_steps: u32,
+        /// First step along a ray.
+        pub view_step_m: f32,
+        /// Growth of the step, in metres per metre.
+        pub view_growth: f32,
+        /// Where rays end that meet nothing.
+        pub furthest_m: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: f32,
+    }
+
     /// From light to display.
     pub struct DisplayUniforms {
         /// Factor from working units to the curve's input, white balance included.

@@ -82,7 +82,8 @@ gpu_struct! {
         pub detail_from_world: Vec4,
         /// Curl noise: offset in xy, tiles per metre in z, strength in tiles of the small noise in w.
         pub curl_from_world: Vec4,
-        /// Displacement of the tops, downwind, in metres: east in x, south in y.
+        /// Displacement of the tops, downwind, in metres: east in x, south in y. In z how far from a place the bound of its
+        /// cell of the map holds.
         pub lean: Vec4,
         /// Height of the base.
         pub base_m: f32,

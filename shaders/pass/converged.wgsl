@@ -1,0 +1,123 @@
+// The march's own model by brute force: plain midpoint steps without early exit, without skipping, with all detail at
+// the finest level, and a march towards the light that reaches the end of the domain. What is left of an error falls as
+// the square of the steps.
+//
+// One dispatch takes a ray so many steps further and leaves it in a buffer: llvmpipe ends an invocation after 65,535
+// loop iterations without a word. counters: rays under way, view steps, light steps, rays that lost iterations.
+#import "common/camera.wgsl"
+#import "generated/BandUniforms.wgsl"
+#import "generated/CameraUniforms.wgsl"
+#import "generated/TruthUniforms.wgsl"
+#import "generated/ViewUniforms.wgsl"
+#import "pass/cloud_light.wgsl"
+#import "pass/march_state.wgsl"
+
+@group(0) @binding(0) var<uniform> view: ViewUniforms;
+@group(0) @binding(1) var<uniform> band: BandUniforms;
+#if GROUND
+@group(0) @binding(3) var ground_distance: texture_2d<f32>;
+#endif
+// Behind the scene's, as air is.
+@group(1) @binding(14) var<uniform> truth: TruthUniforms;
+
+@group(2) @binding(0) var<storage, read_write> marched_rays: array<MarchedRay>;
+@group(2) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;
+
+// Below this a ray adds nothing that f32 could tell from rounding.
+const OPAQUE: f32 = 0x1p-24;
+
+// Light steps that were not taken although they should have been.
+var<private> lost: u32;
+
+// Optical depth towards the key light over the whole way out of the domain, in steps that grow from sample to edge by
+// the same factor, to some hundred times the first.
+fn converged_sun_depth(p: vec3f) -> f32 {
+  let way = domain_exit(p, scene.towards_light);
+  let spread = 1.0 + way / 100.0;
+  let growth = pow(spread, 1.0 / f32(truth.light_steps));
+  var step = way * select((growth - 1.0) / (spread - 1.0), 1.0 / f32(truth.light_steps), spread < 1.01);
+  var t = 0.0;
+  var depth = 0.0;
+  var taken = 0u;
+  for (var i = 0u; i < truth.light_steps; i++) {
+    depth += shadow_extinction(p + scene.towards_light * (t + 0.5 * step), Reading(0.0, true, 0.0)) * step;
+    t += step;
+    step *= growth;
+    taken += 1u;
+  }
+  lost += truth.light_steps - taken;
+  return depth;
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+  let pixel = vec2u(id.x, id.y + band.first_row);
+  if (any(pixel >= view.size) || id.y >= band.rows) {
+    return;
+  }
+  let index = (pixel.y - truth.first_row) * view.size.x + pixel.x;
+  var ray = marched_rays[index];
+  if (ray.is_done == 1u) {
+    return;
+  }
+  let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+  let origin = view.camera.eye;
+  let segments = domain_segments(origin, dir);
+  var limit = truth.furthest_m;
+#if GROUND
+  let ground = textureLoad(ground_distance, pixel, 0).x;
+  limit = select(limit, min(limit, ground), ground >= 0.0);
+#endif
+  let first_end = min(segments.first.y, limit);
+  let second_end = min(segments.second.y, limit);
+  prepare_light(dir);
+  var transmittance = 1.0 - ray.opacity;
+  var t = max(ray.distance_m, segments.first.x);
+  var steps = 0u;
+  var light_steps = 0u;
+  for (var i = 0u; i < truth.per_dispatch; i++) {
+    if (t >= first_end) {
+      t = max(t, segments.second.x);
+    }
+    let end = select(second_end, first_end, t < first_end);
+    if (t >= end || transmittance < OPAQUE) {
+      ray.is_done = 1u;
+      break;
+    }
+    steps += 1u;
+    let step = min(truth.view_step_m + truth.view_growth * t, end - t);
+    let middle = t + 0.5 * step;
+    let p = origin + dir * middle;
+    let densities = densities_at(p, Reading(0.0, true, 0.0));
+    let extinction = extinction_of(densities);
+    if (extinction > 0.0) {
+      light_steps += truth.light_steps;
+      let altitude = altitude_of(p);
+      var source = source_of(key_light_at(p, altitude), converged_sun_depth(p), altitude, densities);
+#if AIR
+      let ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, middle);
+      source = ahead.transmittance * source + ahead.light;
+#endif
+      let alpha = absorbed(extinction * step);
+      let share = transmittance * alpha;
+      ray.light += share * source;
+      ray.distance_sum += share * middle;
+      ray.weight_sum += share;
+      transmittance *= 1.0 - alpha;
+    }
+    // A step that rounding loses would never end.
+    t = max(t + step, t * (1.0 + 0x1p-23));
+  }
+  if (ray.is_done == 0u) {
+    atomicAdd(&counters[0], 1u);
+    lost += truth.per_dispatch - steps;
+  }
+  ray.opacity = 1.0 - transmittance;
+  ray.distance_m = t;
+  marched_rays[index] = ray;
+  atomicAdd(&counters[1], steps);
+  atomicAdd(&counters[2], light_steps);
+  if (lost > 0u) {
+    atomicAdd(&counters[3], 1u);
+  }
+}

@@ -1,0 +1,97 @@
+// Local majorants of the density field, from the greatest body of cells of the weather map and the heights within reach:
+// what delta tracking steps by (Woodcock et al. 1965; Kutz et al., "Spectral and Decomposition Tracking for Rendering
+// Heterogeneous Volumes", 2017).
+#import "cloud/bound.wgsl"
+#import "pass/cloud_field.wgsl"
+
+// The greatest field of the map in cells of four sizes and the cells around them, each half as wide as the one before.
+@group(1) @binding(15) var bound_of_32: texture_2d<f32>;
+@group(1) @binding(16) var bound_of_64: texture_2d<f32>;
+@group(1) @binding(17) var bound_of_128: texture_2d<f32>;
+@group(1) @binding(18) var bound_of_256: texture_2d<f32>;
+const FINEST: u32 = 3u;
+
+struct Majorant {
+  // Never below the extinction of all layers anywhere within reach, in 1/m.
+  extinction_per_m: f32,
+  // How far from the place it holds, in every direction.
+  reach_m: f32,
+}
+
+// Tentative events that a reach may cost before smaller cells are asked.
+const FEW_EVENTS: f32 = 0.7;
+
+fn density_bound_between(layer: LayerUniforms, body: f32, low: f32, high: f32) -> f32 {
+  if (body <= 0.0 || low >= 1.0 || high <= 0.0) {
+    return 0.0;
+  }
+  let lowest = clamp(low, 0.0, 1.0);
+  let greatest = clamp(high, 0.0, 1.0);
+  var bound = body;
+  if (layer.model == MODEL_PROFILE) {
+    bound = profile_bound_between(body, layer, lowest, greatest);
+  }
+  if (layer.model == MODEL_THESIS) {
+    bound = thesis_bound_between(body, layer, lowest, greatest);
+  }
+  return bound * layer.density_scale;
+}
+
+fn greatest_field(uv: vec2f, level: u32) -> f32 {
+  let cells = f32(32u << level);
+  let at = vec2u(min(uv * cells, vec2f(cells - 1.0)));
+  switch (level) {
+    case 0u: {
+      return textureLoad(bound_of_32, at, 0).x;
+    }
+    case 1u: {
+      return textureLoad(bound_of_64, at, 0).x;
+    }
+    case 2u: {
+      return textureLoad(bound_of_128, at, 0).x;
+    }
+    default: {
+      return textureLoad(bound_of_256, at, 0).x;
+    }
+  }
+}
+
+// The bound from cells of one size.
+fn majorant_of(p: vec3f, altitude: f32, level: u32) -> Majorant {
+  var reach = FAR_M;
+  for (var i = 0u; i < LAYERS; i++) {
+    // The layer's own reach is that of 64 cells.
+    reach = min(reach, scene.layers[i].lean.z * 2.0 / f32(1u << level));
+  }
+  var extinction = 0.0;
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    let low = (altitude - reach - layer.base_m) * layer.per_thickness;
+    let high = (altitude + reach - layer.base_m) * layer.per_thickness;
+    if (low < 1.0 && high > 0.0) {
+      let uv = map_uv(layer, p.xz, clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0));
+      let on_map = select(clamp(uv, vec2f(0.0), vec2f(1.0)), uv - floor(uv), scene.map_edge == EDGE_REPEAT);
+      let body = greatest_body(layer, greatest_field(on_map, level));
+      extinction += density_bound_between(layer, body, low, high) * layer.extinction_per_m;
+    }
+  }
+  return Majorant(extinction, reach);
+}
+
+// From large cells to small ones, until crossing the cell costs few tentative events.
+fn majorant_at(p: vec3f) -> Majorant {
+  let altitude = altitude_of(p);
+  var gap = FAR_M;
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    gap = min(gap, max(layer.base_m - altitude, altitude - layer.base_m - 1.0 / layer.per_thickness));
+  }
+  var majorant = majorant_of(p, altitude, 0u);
+  for (var level = 1u; level <= FINEST; level++) {
+    if (majorant.extinction_per_m * majorant.reach_m > FEW_EVENTS) {
+      majorant = majorant_of(p, altitude, level);
+    }
+  }
+  // Above or below all layers nothing is nearer than the gap.
+  return Majorant(select(majorant.extinction_per_m, 0.0, gap > majorant.reach_m), max(majorant.reach_m, gap));
+}
