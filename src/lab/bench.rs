@@ -63,7 +63,7 @@ impl Stats {
 }
 
 /// Linear between neighbours, as most statistics programs do it (Hyndman and Fan 1996, type 7).
-fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+pub(super) fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * sorted.len().checked_sub(1)? as f64;
     // Truncation is meant: `place` lies within the array.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 ..= length − 1")]

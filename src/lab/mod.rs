@@ -1,6 +1,13 @@
-//! Measures: what each pass costs, on flights, and beside the table of the thesis.
+//! Measures: what each pass costs, on flights, and beside the table of the thesis; and how far a picture is from a
+//! reference, with the plots and colours to show it.
 
 pub mod bench;
+pub mod colormap;
+mod colour;
 pub mod flight;
+pub mod flip;
+pub mod metrics;
+pub mod pareto;
+pub mod plot;
 pub mod table;
 pub mod thesis;
