@@ -61,8 +61,9 @@ pub(super) struct Tiles {
     /// The tile under way, and its next row.
     tile: usize,
     row: u32,
-    /// Rows that fit a slice, by the last one.
+    /// What fits a slice, by the last one: rows, and the share of the most steps that a dispatch may take.
     rows_per_slice: f64,
+    effort: f64,
     /// Share of the present tile's rays that have reached their end.
     tile_share: f32,
 }
@@ -119,10 +120,10 @@ impl Tiles {
             tile: 0,
             row: 0,
             rows_per_slice: 8.0,
+            effort: 0.25,
             tile_share: 0.0,
         };
         this.samples = this.next_samples();
-        this.write_uniforms(stage.gpu);
         Ok((this, resolve))
     }
 
@@ -153,9 +154,11 @@ impl Tiles {
         }
     }
 
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a number of steps")]
     fn write_uniforms(&self, gpu: &Gpu) {
         for tile in &self.tiles {
-            let uniforms = Self::uniforms_at(self.goal, self.layers, (self.level, self.samples), tile.first_row);
+            let mut uniforms = Self::uniforms_at(self.goal, self.layers, (self.level, self.samples), tile.first_row);
+            uniforms.per_dispatch = ((f64::from(uniforms.per_dispatch) * self.effort) as u32).max(1);
             gpu.queue.write_buffer(&tile.uniforms, 0, bytemuck::bytes_of(&uniforms));
         }
     }
@@ -163,26 +166,21 @@ impl Tiles {
     /// Sends one slice to the device and waits for it. Returns whether that completed the level.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of rows, clamped")]
     pub(super) fn run_slice(&mut self, gpu: &Gpu, slice: Duration) -> Result<bool, RenderError> {
-        let tile = &self.tiles[self.tile];
-        if self.row == 0 && self.tile == 0 {
-            self.write_uniforms(gpu);
-        }
         if self.row == 0 {
+            self.write_uniforms(gpu);
             gpu.queue.write_buffer(&self.counters, 0, &[0; 16]);
         }
+        let tile = &self.tiles[self.tile];
         let rows = (self.rows_per_slice as u32).next_multiple_of(8).min(tile.rows - self.row);
+        let pixels = self.width * tile.rows;
         let band = BandUniforms { first_row: tile.first_row + self.row, rows, pad0: 0, pad1: 0 };
         gpu.queue.write_buffer(&tile.band, 0, bytemuck::bytes_of(&band));
         let started = Instant::now();
         job::submit(gpu, &[tile.job.clone().with_grid([self.width.div_ceil(8), rows.div_ceil(8), 1])]);
         gpu.wait()?;
-        let took = started.elapsed().as_secs_f64().max(1e-5);
-        let fitting = f64::from(rows) * slice.as_secs_f64() / took;
-        // Never more than twice as many: the next rows may hold more cloud.
-        self.rows_per_slice = fitting.clamp(8.0, 2.0 * self.rows_per_slice.max(8.0)).min(f64::from(self.height));
+        self.learn(rows, slice.as_secs_f64() / started.elapsed().as_secs_f64().max(1e-5));
         self.row += rows;
-        let pixels = self.width * tile.rows;
-        if self.row < tile.rows {
+        if self.row < self.tiles[self.tile].rows {
             return Ok(false);
         }
         self.row = 0;
@@ -196,6 +194,22 @@ impl Tiles {
         self.tile += 1;
         self.tile_share = 0.0;
         Ok(self.tile == self.tiles.len())
+    }
+
+    /// Fits rows and steps to a slice that could have held `room` times as much. Steps are cut only where eight rows are
+    /// too many; a dispatch that keeps a ray's state for few steps wastes time.
+    fn learn(&mut self, rows: u32, room: f64) {
+        // Never more than twice as much: the next rows may hold more cloud.
+        let room = room.clamp(0.05, 2.0);
+        let fitting = f64::from(rows) * room;
+        if room > 1.0 && self.effort < 1.0 {
+            self.effort = (self.effort * room).min(1.0);
+        } else if fitting < 8.0 {
+            self.rows_per_slice = 8.0;
+            self.effort *= fitting / 8.0;
+        } else {
+            self.rows_per_slice = fitting.min(f64::from(self.height));
+        }
     }
 
     fn add(&mut self, [_, first, second, third]: [u32; 4]) {
