@@ -9,10 +9,12 @@ mod gpu {
     mod math;
     mod noise;
     mod phase;
+    mod phase_sample;
     mod physics;
     mod random;
     mod shaders;
     mod shell;
     mod temporal;
     mod textures;
+    mod truth;
 }

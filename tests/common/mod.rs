@@ -3,6 +3,7 @@
 pub(crate) mod field;
 pub(crate) mod sky;
 pub(crate) mod slab;
+pub(crate) mod truth;
 
 use std::collections::BTreeSet;
 use std::sync::OnceLock;

@@ -23,6 +23,8 @@ pub(crate) struct March {
     pub(crate) scene: SceneUniforms,
     pub(crate) eye: Vec3,
     pub(crate) dir: Vec3,
+    /// Tangent of half the angle that the picture spans; at 0 all rays take the same direction.
+    pub(crate) spread: f32,
     /// Whether each ray has its own offset; all are read in the middle of their cells otherwise.
     pub(crate) jittered: bool,
     pub(crate) domain: u32,
@@ -41,6 +43,8 @@ pub(crate) struct Seen {
 /// A layer of the uniform model that fills base to top with extinction.
 pub(crate) fn uniform_layer(base_m: f32, top_m: f32, extinction_per_m: f32) -> LayerUniforms {
     LayerUniforms {
+        // The map is the same everywhere, so its bound holds however far.
+        lean: Vec4::new(0.0, 0.0, 2000.0, 0.0),
         base_m,
         per_thickness: 1.0 / (top_m - base_m),
         body_bias: 1.0,
@@ -64,7 +68,7 @@ pub(crate) fn noisy_layer(model: u32, base_m: f32, top_m: f32, coverage: f32) ->
         shape_from_world: Vec4::new(0.3, 0.0, 0.7, 1.0 / 2800.0),
         detail_from_world: Vec4::new(0.0, 0.5, 0.0, 1.0 / 600.0),
         curl_from_world: Vec4::new(0.0, 0.0, 1.0 / 1500.0, 0.1),
-        lean: Vec4::new(300.0, 0.0, 0.0, 0.0),
+        lean: Vec4::new(300.0, 0.0, 150.0, 0.0),
         base_ramp: 0.06,
         top_variation: 0.6,
         body_scale: 1.0 / softness,
@@ -77,6 +81,11 @@ pub(crate) fn noisy_layer(model: u32, base_m: f32, top_m: f32, coverage: f32) ->
         model,
         ..uniform_layer(base_m, top_m, 0.04)
     }
+}
+
+/// The uniform of air that is not there.
+pub(crate) fn no_air() -> AirUniforms {
+    AirUniforms { planet_radius_m: RADIUS_M, top_altitude_m: 1e5, sun_angular_radius: 0.0047, ..AirUniforms::zeroed() }
 }
 
 impl March {
@@ -105,7 +114,7 @@ impl March {
         };
         scene.layers[0] = uniform_layer(0.0, thickness_m, extinction_per_m);
         let eye = if dir.y < 0.0 { Vec3::Y * thickness_m } else { Vec3::ZERO };
-        Self { scene, eye, dir, jittered: false, domain: FLAT, layers: 1, flags: vec!["UNIFORM"], mapped: false }
+        Self { scene, eye, dir, spread: 0.0, jittered: false, domain: FLAT, layers: 1, flags: vec!["UNIFORM"], mapped: false }
     }
 
     /// Light from all around that every sample sends on whole.
@@ -117,12 +126,14 @@ impl March {
         self
     }
 
-    fn view(&self) -> ViewUniforms {
+    pub(crate) fn view(&self, side: u32) -> ViewUniforms {
         let mut view = ViewUniforms::zeroed();
         view.camera.eye = self.eye;
-        // Without width or height: every pixel looks straight on.
         view.camera.forward = self.dir;
-        view.size = UVec2::splat(SIDE);
+        let right = self.dir.cross(Vec3::Y).normalize_or(Vec3::X);
+        view.camera.right = right * self.spread;
+        view.camera.up = right.cross(self.dir) * self.spread;
+        view.size = UVec2::splat(side);
         view.ray_count = view.size;
         view.update_block = UVec2::ONE;
         view.jitter = if self.jittered { Vec2::new(1.0, 0.0) } else { Vec2::new(0.0, 0.5) };
@@ -132,15 +143,9 @@ impl March {
     /// Runs it.
     pub(crate) fn run(&self) -> Seen {
         let uniform = |label, bytes| gpu().uniform(label, bytes);
-        let (view, scene) = (self.view(), self.scene);
+        let (view, scene) = (self.view(SIDE), self.scene);
         let (view, scene) = (uniform("view", bytemuck::bytes_of(&view)), uniform("scene", bytemuck::bytes_of(&scene)));
-        let air = AirUniforms {
-            planet_radius_m: RADIUS_M,
-            top_altitude_m: 1e5,
-            sun_angular_radius: 0.0047,
-            ..AirUniforms::zeroed()
-        };
-        let air = uniform("air", bytemuck::bytes_of(&air));
+        let air = uniform("air", bytemuck::bytes_of(&no_air()));
         let offsets: Vec<f32> = (0..SIDE * SIDE).map(|at| (at as f32 + 0.5) / (SIDE * SIDE) as f32).collect();
         let blue_noise = scalars([SIDE; 2], &offsets);
         // No air: an optical depth of 0 everywhere. Ambient light of radiance 1.
