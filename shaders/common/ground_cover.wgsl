@@ -71,19 +71,22 @@ fn fields(p: vec2f, footprint_m: f32) -> vec3f {
   // Two parcels in three have one, one to three metres to each side.
   let hedge_m = 4.5 * max(draw.z - 0.33, 0.0);
   let edge = min(inside.x, inside.y);
-  let hedge = (1.0 - smoothstep(0.6 * hedge_m, hedge_m + 0.5 + footprint_m, edge)) * min(hedge_m / (0.7 * footprint_m + 1.0), 1.0);
+  let covered = min(hedge_m / (0.7 * footprint_m + 1.0), 1.0);
+  let hedge = (1.0 - smoothstep(0.6 * hedge_m, hedge_m + 0.5 + footprint_m, edge)) * covered;
   let parcel = mix(crop_tint(draw), WOOD_TINT, 0.8 * hedge);
   return mix(MEAN_FIELD, parcel, shown(140.0, footprint_m));
 }
 
-// `p` in metres in the world; a pixel covers `footprint_m` of ground the long way; `wet`, 0..1, says where woods are many.
+// `p` in metres in the world; a pixel covers `footprint_m` of ground the long way; `wet`, 0..1, says where woods are
+// many.
 fn ground_cover(p: vec2f, footprint_m: f32, wet: f32) -> GroundCover {
   let wide = lattice_noise(p / 760.0, 902u);
   let middle = lattice_noise(p / 230.0, 903u);
   let small = lattice_noise(p / 47.0, 904u);
   // Bends what would be straight, as streams and old paths do.
   let bent = p + (middle.yz * 14.0 + small.yz * 3.0);
-  let field_tint = fields(bent, footprint_m) * (1.0 + 0.22 * (middle.x - 0.5) + 0.25 * (small.x - 0.5) * shown(47.0, footprint_m));
+  let mottle = 0.22 * (middle.x - 0.5) + 0.25 * (small.x - 0.5) * shown(47.0, footprint_m);
+  let field_tint = fields(bent, footprint_m) * (1.0 + mottle);
   let wood_field = wide.x * 0.55 + middle.x * 0.33 + small.x * 0.12 + 0.45 * (wet - 0.5);
   let soft = 0.012 + 0.0012 * min(footprint_m, 300.0);
   let mask = smoothstep(0.60 - soft, 0.60 + soft, wood_field);

@@ -153,8 +153,8 @@ fn with_rock(albedo: vec3f, p: vec3f, normal: vec3f) -> vec3f {
 }
 
 #if SHADOW
-// Light that reaches the ground from the sides and bases of clouds that cover the whole sky, as a part of the sunlight that
-// they keep from it: with broken cumulus the sky gives about a third of all light, in clear air a sixth.
+// Light that reaches the ground from the sides and bases of clouds, as a part of the sunlight that they keep from it:
+// with broken cumulus the sky gives about a third of all light, in clear air a sixth.
 const CLOUD_REFLECTION: f32 = 0.6;
 
 // Share of the key light that cloud lets through to a place on the ground: straight, and scattered downwards.
@@ -173,7 +173,8 @@ fn ground_light(p: vec3f, dir: vec3f, distance_m: f32) -> vec3f {
   let place = p.xz - ground.plain_at;
   var wet = 0.5;
 #if TERRAIN
-  wet = textureSampleLevel(terrain_map, linear_repeat, p.xz * ground.tile_from_world.z + ground.tile_from_world.xy, 0.0).z;
+  let uv = p.xz * ground.tile_from_world.z + ground.tile_from_world.xy;
+  wet = textureSampleLevel(terrain_map, linear_repeat, uv, 0.0).z;
 #endif
   let footprint = distance_m * view.pixel_angle / max(-dot(flat_normal, dir), 0.01);
   let cover = ground_cover(place, footprint, wet);
