@@ -8,6 +8,8 @@
 
 // Mean of the erosion noise, to which it fades with distance.
 const MEAN_EROSION: f32 = 0.5;
+// Sums of octaves huddle about their mean; this spreads them, or surfaces would look like dough.
+const EROSION_CONTRAST: f32 = 2.2;
 
 // Height of the tops over the layer, 0..1: cumulus towers with its body, the others stay flat.
 fn top_height(weather: Weather, layer: LayerUniforms) -> f32 {
@@ -28,12 +30,25 @@ fn height_profile(weather: Weather, layer: LayerUniforms, h: f32) -> f32 {
   return body * base * sqrt(max(crown, 0.0));
 }
 
-// Signed field after the large noise: positive inside. Noise is added, not multiplied, and its amplitude falls where
-// the profile is thin, which keeps pebbles from floating beside the bodies.
+// Mean of each of the large noise's sums of billows.
+const MEAN_BILLOW: f32 = 0.48;
+
+// How much of the large noise counts: it falls where the profile is thin, which keeps pebbles from floating beside the
+// bodies.
+fn noise_amplitude(profile: f32) -> f32 {
+  return smoothstep(0.04, 0.58, profile);
+}
+
+// Signed field after the large noise: positive inside. Noise is added, not multiplied. Knobs sit on domes and not in the
+// hollows between them: a cloud of one roughness looks like foam, and knobs beside a dome would float.
 fn billowed(profile: f32, noise: vec4f, weather: Weather, layer: LayerUniforms) -> f32 {
-  let billows = clamp((dot(noise.gba, vec3f(0.40, 0.35, 0.25)) - 0.28) / 0.42, 0.0, 1.0);
+  let domes = noise.g - MEAN_BILLOW;
+  let knobs = dot(noise.ba, vec2f(0.58, 0.42)) - MEAN_BILLOW;
+  let connected = (noise.r - noise.g) / max(1.0 - noise.g, 0.1);
+  let rough = smoothstep(-0.22, 0.12, domes) * mix(0.5, 1.2, smoothstep(0.38, 0.60, connected));
+  let billows = clamp(MEAN_BILLOW + 1.5 * domes + 2.2 * rough * knobs, 0.0, 1.0);
   let lumps = billows * 0.8 + noise.r * 0.2;
-  let amplitude = smoothstep(0.04, 0.40, profile);
+  let amplitude = noise_amplitude(profile);
   let strength = layer.shape_strength * dot(weather.types, vec3f(1.0, 0.7, 0.9));
   return (1.2 * profile - 0.35 + strength * (lumps * amplitude - 0.65)) * 2.2;
 }
@@ -43,7 +58,8 @@ fn erosion(noise: vec4f, layer: LayerUniforms, h: f32, fade: f32) -> f32 {
   let cells = dot(noise.rgb, vec3f(0.45, 0.33, 0.22));
   let wisps = noise.a * 0.6 + 0.4 * cells;
   let wispy = max(1.0 - smoothstep(0.0, 0.22, h), layer.wispiness);
-  return mix(mix(1.0 - cells, wisps, wispy), MEAN_EROSION, fade) * layer.detail_strength;
+  let carved = MEAN_EROSION + EROSION_CONTRAST * (mix(1.0 - cells, wisps, wispy) - 0.5);
+  return mix(clamp(carved, 0.0, 1.0), MEAN_EROSION, fade) * layer.detail_strength;
 }
 
 // The signed field after erosion; only its surface is eaten.
@@ -61,7 +77,7 @@ fn near_surface(field: f32, layer: LayerUniforms) -> bool {
 
 // Density 0..1. Liquid water grows with height above the base, nearly as its power 2/3 (Brenguier et al. 2000).
 fn profile_density(field: f32, layer: LayerUniforms, h: f32) -> f32 {
-  let solid = clamp(field * STEEPNESS * layer.sharpness, 0.0, 1.0);
+  let solid = smoothstep(0.0, 1.0, field * STEEPNESS * layer.sharpness);
   return solid * mix(0.45, 1.0, clamp(h * 1.2, 0.0, 1.0));
 }
 
@@ -69,7 +85,7 @@ fn profile_density(field: f32, layer: LayerUniforms, h: f32) -> f32 {
 fn profile_bound(greatest_body: f32, layer: LayerUniforms) -> f32 {
   let body = mix(greatest_body, sqrt(greatest_body), layer.anvil);
   let strength = max(layer.shape_strength, 0.0);
-  let lumps = smoothstep(0.04, 0.40, body);
+  let lumps = noise_amplitude(body);
   let field = (1.2 * body - 0.35 + max(strength * (lumps - 0.65), 0.7 * strength * (lumps - 0.65))) * 2.2;
-  return clamp(field * STEEPNESS * layer.sharpness, 0.0, 1.0);
+  return smoothstep(0.0, 1.0, field * STEEPNESS * layer.sharpness);
 }

@@ -13,7 +13,7 @@ const MULTISCATTER_SIZE = vec2f(64.0, 32.0);
 const MULTISCATTER_OFFSET = 6.0;
 const SKY_VIEW_SIZE = vec2f(256.0, 144.0);
 const AERIAL_SIZE = vec3f(48.0, 40.0, 32.0);
-// Distance of the last slice of the aerial tables.
+// Distance of the last slice of the aerial tables, where the ground is not nearer.
 const AERIAL_RANGE_M = 250000.0;
 // Cosine of the light's zenith angle about which the table of multiple scattering is finest.
 const MULTISCATTER_MIDDLE = -0.08;
@@ -173,11 +173,16 @@ fn azimuth_of(dir: vec3f) -> f32 {
   return select(atan2(dir.x, -dir.z), 0.0, level);
 }
 
+// Elevation in radians above the true horizon of the eye.
+fn above_horizon(air: AirUniforms, dir_y: f32) -> f32 {
+  return asin(clamp(dir_y, -1.0, 1.0)) + asin(horizon_dip_sine(air.planet_radius_m, air.eye_altitude_m));
+}
+
 // Row of a direction: the lower half of the table lies below the true horizon, the upper half above it, both with rows
 // that crowd towards it; no row mixes the two, for the horizon is an edge.
 fn elevation_row(air: AirUniforms, dir_y: f32, rows: f32) -> f32 {
   let horizon = -asin(horizon_dip_sine(air.planet_radius_m, air.eye_altitude_m));
-  let above = asin(clamp(dir_y, -1.0, 1.0)) - horizon;
+  let above = above_horizon(air, dir_y);
   let half_rows = 0.5 * rows;
   let up = half_rows + (half_rows - 1.0) * sqrt(clamp(above / (0.5 * PI - horizon), 0.0, 1.0));
   let down = (half_rows - 1.0) * (1.0 - sqrt(clamp(-above / (0.5 * PI + horizon), 0.0, 1.0)));
@@ -213,10 +218,21 @@ fn aerial_azimuth(air: AirUniforms, turn: f32) -> f32 {
   return relative + air.main_azimuth;
 }
 
-// Distance in metres of a slice of the aerial tables; 0 for the first.
-fn aerial_distance(slice: f32) -> f32 {
+// Distance in metres of the last slice in a direction. Below the horizon it is the ground: rows next to each other meet
+// the ground at very different distances, and rows that stopped at metres would give the air before far ground too little
+// light, a dark line under the sky.
+fn aerial_reach(air: AirUniforms, dir_y: f32) -> f32 {
+  let altitude = table_altitude(air, air.eye_altitude_m);
+  let b = (air.planet_radius_m + altitude) * min(dir_y, 0.0);
+  let c = altitude * (2.0 * air.planet_radius_m + altitude);
+  let to_ground = c / (sqrt(max(b * b - c, 0.0)) - b + 1e-3);
+  return select(clamp(to_ground, 1.0, AERIAL_RANGE_M), AERIAL_RANGE_M, above_horizon(air, dir_y) >= 0.0);
+}
+
+// Distance in metres of a slice of the aerial tables, the last at `reach_m`; 0 for the first.
+fn aerial_distance(slice: f32, reach_m: f32) -> f32 {
   let x = slice / (AERIAL_SIZE.z - 1.0);
-  return AERIAL_RANGE_M * x * x;
+  return reach_m * x * x;
 }
 
 // Direction of an azimuth and an elevation, both in radians.

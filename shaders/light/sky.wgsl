@@ -55,12 +55,13 @@ fn aerial_at(
   dir: vec3f,
   distance_m: f32,
 ) -> Aerial {
-  let reach = clamp(distance_m, 0.0, AERIAL_RANGE_M);
+  let reach = aerial_reach(air, dir.y);
+  let distance = clamp(distance_m, 0.0, reach);
   let last = AERIAL_SIZE.z - 1.0;
-  let slice = min(floor(sqrt(reach / AERIAL_RANGE_M) * last), last - 1.0);
-  let near = aerial_distance(slice);
-  let thickness = aerial_distance(slice + 1.0) - near;
-  let depth = slice + clamp((reach - near) / thickness, 0.0, 1.0);
+  let slice = min(floor(sqrt(distance / reach) * last), last - 1.0);
+  let near = aerial_distance(slice, reach);
+  let thickness = aerial_distance(slice + 1.0, reach) - near;
+  let depth = slice + clamp((distance - near) / thickness, 0.0, 1.0);
   let turn = aerial_turn(air, azimuth_of(dir)) + 0.5 / AERIAL_SIZE.x;
   let place = vec3f(turn, elevation_row(air, dir.y, AERIAL_SIZE.y), (depth + 0.5) / AERIAL_SIZE.z);
   var aerial: Aerial;

@@ -1,5 +1,6 @@
 // What lies behind the clouds: sky, sun and moon, and ground with hills, mountains and the shadows of clouds.
 #import "common/camera.wgsl"
+#import "common/ground_cover.wgsl"
 #import "common/random.wgsl"
 #import "common/shell.wgsl"
 #import "generated/BandUniforms.wgsl"
@@ -144,23 +145,18 @@ fn ground_normal(p: vec3f, distance_m: f32) -> vec3f {
 #endif
 }
 
-fn ground_albedo(p: vec3f, normal: vec3f, distance_m: f32) -> vec3f {
-  var albedo = ground.albedo;
-#if TERRAIN
-  let uv = p.xz * ground.tile_from_world.z + ground.tile_from_world.xy;
-  let patches = textureSampleLevel(terrain_map, linear_repeat, uv * 7.3, 0.0).z;
-  let fields = textureSampleLevel(terrain_map, linear_repeat, uv * 61.0, 0.0).z;
-  let fade = exp(-distance_m / 8000.0);
-  albedo *= 0.45 + 1.1 * patches + (fields - 0.5) * 0.9 * fade;
-  albedo = mix(albedo, albedo.grr * vec3f(0.95, 0.85, 0.6), clamp(fields * 2.0 - 0.9, 0.0, 0.6));
+// Rock where it is steep or high.
+fn with_rock(albedo: vec3f, p: vec3f, normal: vec3f) -> vec3f {
   let height = max(altitude_at(p, ground.planet_radius_m), 0.0);
   let rocky = smoothstep(0.90, 0.72, normal.y) + smoothstep(0.35, 0.8, height / max(ground.mountains_m, 1.0));
-  albedo = mix(albedo, ground.rock, clamp(rocky, 0.0, 1.0) * step(1.0, ground.mountains_m));
-#endif
-  return albedo;
+  return mix(albedo, ground.rock, clamp(rocky, 0.0, 1.0) * step(1.0, ground.mountains_m));
 }
 
 #if SHADOW
+// Light that reaches the ground from the sides and bases of clouds, as a part of the sunlight that they keep from it:
+// with broken cumulus the sky gives about a third of all light, in clear air a sixth.
+const CLOUD_REFLECTION: f32 = 0.6;
+
 // Share of the key light that cloud lets through to a place on the ground: straight, and scattered downwards.
 fn light_through_cloud(p: vec3f) -> vec2f {
   let foot = p - ground.towards_light * (p.y / max(ground.towards_light.y, 0.05));
@@ -172,19 +168,32 @@ fn light_through_cloud(p: vec3f) -> vec2f {
 }
 #endif
 
-fn ground_light(p: vec3f, distance_m: f32) -> vec3f {
-  let normal = ground_normal(p, distance_m);
+fn ground_light(p: vec3f, dir: vec3f, distance_m: f32) -> vec3f {
+  let flat_normal = ground_normal(p, distance_m);
+  let place = p.xz - ground.plain_at;
+  var wet = 0.5;
+#if TERRAIN
+  let uv = p.xz * ground.tile_from_world.z + ground.tile_from_world.xy;
+  wet = textureSampleLevel(terrain_map, linear_repeat, uv, 0.0).z;
+#endif
+  let footprint = distance_m * view.pixel_angle / max(-dot(flat_normal, dir), 0.01);
+  let cover = ground_cover(place, footprint, wet);
+  let normal = normalize(flat_normal - vec3f(cover.slope.x, 0.0, cover.slope.y));
+  let albedo = with_rock(ground.albedo * cover.tint, p, flat_normal);
   let altitude = max(altitude_at(p, ground.planet_radius_m), 0.0);
   let cosine = light_cos_zenith(p, ground.towards_light, ground.planet_radius_m);
   var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
   var scattered = vec3f(0.0);
+  var from_clouds = vec3f(0.0);
 #if SHADOW
+  // The sides of the clouds round about light the ground as well, in their shadows most of all.
+  from_clouds = key * max(ground.towards_light.y, 0.0) / PI * (1.0 - ground.mean_shadow) * CLOUD_REFLECTION;
   let through = light_through_cloud(p);
   scattered = key * through.y * max(ground.towards_light.y, 0.0) / PI;
   key *= through.x;
 #endif
-  let sky = textureLoad(sky_ambient, vec2u(3u, 0u), 0).rgb * (0.6 + 0.4 * normal.y);
-  return ground_albedo(p, normal, distance_m) * (key * max(dot(normal, ground.towards_light), 0.0) / PI + scattered + sky);
+  let sky = (textureLoad(sky_ambient, vec2u(3u, 0u), 0).rgb + from_clouds) * (0.6 + 0.4 * normal.y);
+  return albedo * (key * max(dot(normal, ground.towards_light), 0.0) / PI + scattered + sky);
 }
 #endif
 
@@ -205,7 +214,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   var light: vec3f;
   if (hit >= 0.0) {
     let ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, hit);
-    light = ground_light(eye + dir * hit, hit) * ahead.transmittance + ahead.light;
+    light = ground_light(eye + dir * hit, dir, hit) * ahead.transmittance + ahead.light;
   } else {
     light = sky_with_lights(dir);
   }

@@ -1,5 +1,5 @@
-// The air between the eye and every distance up to 250 km: one invocation walks one direction outwards and leaves what it
-// has gathered at each slice (Hillaire 2020, section 5.4). A slice beyond the ground holds what the ground does.
+// The air between the eye and every distance up to 250 km or the ground: one invocation walks one direction outwards and
+// leaves what it has gathered at each slice (Hillaire 2020, section 5.4).
 
 #import "light/air_march.wgsl"
 
@@ -20,6 +20,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   let elevation = row_elevation(air, id.y, AERIAL_SIZE.y);
   let dir = direction_of(aerial_azimuth(air, f32(id.x) / AERIAL_SIZE.x), elevation.x);
   let ray = air_ray(air, air.eye_altitude_m, dir, elevation.y);
+  // The row at the horizon belongs to the half that `elevation.y` says, whatever rounding makes of its sine.
+  let reach = select(AERIAL_RANGE_M, clamp(ray.end_m, 1.0, AERIAL_RANGE_M), elevation.y < 0.0);
   var light = vec3f(0.0);
   var transmittance = vec3f(1.0);
   var start = 0.0;
@@ -27,7 +29,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if slice > 0u {
       for (var part = 1u; part <= STEPS_PER_SLICE; part++) {
         let place = f32(slice - 1u) + f32(part) / f32(STEPS_PER_SLICE);
-        let to = min(aerial_distance(place), ray.end_m);
+        let to = min(aerial_distance(place, reach), ray.end_m);
         let part_air = air_step(sky_transmittance, sky_multiscatter, linear_repeat, air, ray, vec2f(start, to));
         light += transmittance * part_air.light;
         transmittance *= part_air.transmittance;

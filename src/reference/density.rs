@@ -9,6 +9,10 @@ use crate::render::uniforms::scene::LayerUniforms;
 
 /// Mean of the erosion noise, to which it fades with distance.
 const MEAN_EROSION: f32 = 0.5;
+/// How far the erosion noise is spread about its mean.
+const EROSION_CONTRAST: f32 = 2.2;
+/// Mean of each of the large noise's sums of billows.
+const MEAN_BILLOW: f32 = 0.48;
 /// What the thesis's model subtracts from its shape (Koblížek 2019, equation 2.2).
 const THESIS_THRESHOLD: f32 = 0.2;
 
@@ -65,10 +69,14 @@ pub fn height_profile(weather: &Weather, layer: &LayerUniforms, h: f32) -> f32 {
 /// Signed field after the large noise, positive inside.
 #[must_use]
 pub fn billowed(profile: f32, noise: Vec4, weather: &Weather, layer: &LayerUniforms) -> f32 {
-    let billows = ((noise.yzw().dot(Vec3::new(0.40, 0.35, 0.25)) - 0.28) / 0.42).clamp(0.0, 1.0);
+    let domes = noise.y - MEAN_BILLOW;
+    let knobs = noise.zw().dot(Vec2::new(0.58, 0.42)) - MEAN_BILLOW;
+    let connected = (noise.x - noise.y) / (1.0 - noise.y).max(0.1);
+    let rough = smoothstep(-0.22, 0.12, domes) * mix(0.5, 1.2, smoothstep(0.38, 0.60, connected));
+    let billows = (MEAN_BILLOW + 1.5 * domes + 2.2 * rough * knobs).clamp(0.0, 1.0);
     let lumps = billows * 0.8 + noise.x * 0.2;
     let strength = layer.shape_strength * weather.types.dot(Vec3::new(1.0, 0.7, 0.9));
-    (1.2 * profile - 0.35 + strength * (lumps * smoothstep(0.04, 0.40, profile) - 0.65)) * 2.2
+    (1.2 * profile - 0.35 + strength * (lumps * smoothstep(0.04, 0.58, profile) - 0.65)) * 2.2
 }
 
 /// What erosion takes from the surface; `fade` is how far the noise has faded to its mean.
@@ -77,7 +85,8 @@ pub fn erosion(noise: Vec4, layer: &LayerUniforms, h: f32, fade: f32) -> f32 {
     let cells = noise.xyz().dot(Vec3::new(0.45, 0.33, 0.22));
     let wisps = noise.w * 0.6 + 0.4 * cells;
     let wispy = (1.0 - smoothstep(0.0, 0.22, h)).max(layer.wispiness);
-    mix(mix(1.0 - cells, wisps, wispy), MEAN_EROSION, fade) * layer.detail_strength
+    let carved = MEAN_EROSION + EROSION_CONTRAST * (mix(1.0 - cells, wisps, wispy) - 0.5);
+    mix(carved.clamp(0.0, 1.0), MEAN_EROSION, fade) * layer.detail_strength
 }
 
 /// The signed field after erosion.
@@ -89,7 +98,7 @@ pub fn eroded(field: f32, amount: f32) -> f32 {
 /// Density of the profile model, 0 to 1.
 #[must_use]
 pub fn profile_density(field: f32, layer: &LayerUniforms, h: f32) -> f32 {
-    (field * 1.7 * layer.sharpness).clamp(0.0, 1.0) * mix(0.45, 1.0, (h * 1.2).clamp(0.0, 1.0))
+    smoothstep(0.0, 1.0, field * 1.7 * layer.sharpness) * mix(0.45, 1.0, (h * 1.2).clamp(0.0, 1.0))
 }
 
 fn trapezoid(h: f32, [a, b, c, d]: [f32; 4]) -> f32 {

@@ -18,6 +18,7 @@ files! {
     "cloud/thesis.wgsl",
     "cloud/weather.wgsl",
     "common/camera.wgsl",
+    "common/ground_cover.wgsl",
     "common/math.wgsl",
     "common/random.wgsl",
     "common/shell.wgsl",
