@@ -187,7 +187,8 @@ fn ground_light(p: vec3f, dir: vec3f, distance_m: f32) -> vec3f {
   var from_clouds = vec3f(0.0);
 #if SHADOW
   // The sides of the clouds round about light the ground as well, in their shadows most of all.
-  from_clouds = key * max(ground.towards_light.y, 0.0) / PI * (1.0 - ground.mean_shadow) * CLOUD_REFLECTION;
+  from_clouds = key * max(ground.towards_light.y, 0.0) / PI * (1.0 - ground.mean_shadow) * CLOUD_REFLECTION
+    * ground.shadow_strength;
   let through = light_through_cloud(p);
   scattered = key * through.y * max(ground.towards_light.y, 0.0) / PI;
   key *= through.x;

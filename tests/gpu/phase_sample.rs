@@ -44,7 +44,7 @@ fn drawn_cosines_follow_the_phase_function() {
         for g in [-0.7, 0.0, 1e-3, 0.5, 0.85, 0.97] {
             let shape = PhaseShape { kind, g, back_g: -0.3, back_mix: 0.25 };
             let view_dir = random.direction();
-            let draws = drawn(shape, view_dir, kind * 100 + (g * 50.0).abs() as u32);
+            let draws = drawn(shape, view_dir, kind);
             // Cells of about equal chance, by the quantiles of the draws themselves at first, counted anew below.
             let mut cosines: Vec<f64> = draws.iter().map(|draw| f64::from(draw[3]).clamp(-1.0, 1.0)).collect();
             cosines.sort_by(f64::total_cmp);

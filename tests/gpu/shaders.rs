@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nephoscope::gpu::ProgramKey;
 use nephoscope::plan::FramePlan;
-use nephoscope::render::{programs, shaders::TABLE};
+use nephoscope::render::{programs, shaders::TABLE, truth};
 use nephoscope::scene::builtin::BUILTINS;
 use nephoscope::scene::random::randomise;
 use nephoscope::scene::{DensityModel, DomainKind, Frame, Output, Quality, Scene, ToneMap, UpdateFraction};
@@ -70,7 +70,9 @@ fn reachable() -> BTreeMap<String, ProgramKey> {
     let mut keys = vec![ProgramKey::plain("pass/weather_blend.wgsl").with_flags(["BELOW"])];
     for (scene, quality) in &scenes {
         for output in [Output::Display, Output::Linear, Output::CloudsAlone] {
-            keys.extend(programs(&FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output })));
+            let plan = FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output });
+            keys.extend(programs(&plan));
+            keys.extend(truth::programs(&plan));
         }
     }
     let counted = keys.iter().filter(|key| key.file == "pass/march.wgsl").map(|key| key.clone().with_flags(["COUNT"]));

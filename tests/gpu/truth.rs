@@ -87,7 +87,7 @@ fn the_converged_march_is_of_second_order() {
     let exact = at(2.0, 256);
     let light = exact.iter().map(|ray| f64::from(ray[0])).sum::<f64>() / exact.len() as f64;
     assert!(light > 0.05, "the rays must meet cloud: {light}");
-    let errors: Vec<f64> = [(64.0, 8), (32.0, 16), (16.0, 32)]
+    let errors: Vec<f64> = [(32.0, 16), (16.0, 32), (8.0, 64)]
         .map(|(step, light_steps)| {
             let rays = at(step, light_steps);
             let squares = rays.iter().zip(&exact).map(|(ray, exact)| f64::from(ray[0] - exact[0]).powi(2));
@@ -142,7 +142,7 @@ fn disort(case: &Disort, samples: u32) -> Mean {
 fn multiple_scattering_of_slabs_is_that_of_disort() {
     for (index, case) in DISORT.iter().enumerate() {
         // Light that has crossed the thickest slab is noisy.
-        let mean = disort(case, if index < 8 { 1000 } else { 3000 });
+        let mean = disort(case, if index < 8 { 1000 } else { 3400 });
         assert!(mean.light_error < 0.005 * case.3, "case {index}: an error of {} says little", mean.light_error);
         check(&format!("case {index}"), mean.light, mean.light_error, case.3);
     }
