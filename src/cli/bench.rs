@@ -61,7 +61,7 @@ enum Suite {
 
 #[derive(Clone, Copy, Debug, Args)]
 #[group(multiple = false)]
-struct Form {
+pub(super) struct Form {
     /// Print JSON, one table a line.
     #[arg(long)]
     json: bool,
@@ -163,7 +163,7 @@ fn progress(what: &str) {
     }
 }
 
-fn print_machine(form: Form, gpu: &Gpu) -> Result<()> {
+pub(super) fn print_machine(form: Form, gpu: &Gpu) -> Result<()> {
     let software = "SOFTWARE ADAPTER: this processor draws; its times say nothing about a graphics card.";
     let lines = [
         ("program", format!("nephoscope {}", env!("CARGO_PKG_VERSION"))),
@@ -185,7 +185,7 @@ fn print_machine(form: Form, gpu: &Gpu) -> Result<()> {
     print(&format!("{text}\n"))
 }
 
-fn print_table(form: Form, table: &Table) -> Result<()> {
+pub(super) fn print_table(form: Form, table: &Table) -> Result<()> {
     let text = match form {
         Form { json: true, .. } => format!("{}", as_json(table)),
         Form { csv: true, .. } => table.csv(),

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 done · 1 rendering failed · 2 wrong usage · 3 no usable adapter · 4 a file could not be read or written.
 
+mod accuracy;
 mod args;
 mod bench;
 mod editor;
@@ -49,6 +50,8 @@ enum Command {
     Info(info::InfoArgs),
     /// Measures what each pass costs.
     Bench(Box<bench::BenchArgs>),
+    /// Measures how far pictures are from the truth, and what that costs.
+    Accuracy(Box<accuracy::AccuracyArgs>),
 }
 
 /// Changes to the sky.
@@ -84,6 +87,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Some(Command::Presets(command)) => presets::run(&command),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
+        Some(Command::Accuracy(args)) => accuracy::run(&args),
     }
 }
 

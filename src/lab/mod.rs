@@ -1,6 +1,7 @@
 //! Measures: what each pass costs, on flights, and beside the table of the thesis; and how far a picture is from a
 //! reference, with the plots and colours to show it.
 
+pub mod accuracy;
 pub mod bench;
 pub mod colormap;
 mod colour;

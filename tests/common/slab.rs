@@ -114,7 +114,17 @@ impl March {
         };
         scene.layers[0] = uniform_layer(0.0, thickness_m, extinction_per_m);
         let eye = if dir.y < 0.0 { Vec3::Y * thickness_m } else { Vec3::ZERO };
-        Self { scene, eye, dir, spread: 0.0, jittered: false, domain: FLAT, layers: 1, flags: vec!["UNIFORM"], mapped: false }
+        Self {
+            scene,
+            eye,
+            dir,
+            spread: 0.0,
+            jittered: false,
+            domain: FLAT,
+            layers: 1,
+            flags: vec!["UNIFORM"],
+            mapped: false,
+        }
     }
 
     /// Light from all around that every sample sends on whole.
