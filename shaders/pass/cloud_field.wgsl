@@ -293,12 +293,21 @@ fn shadow_extinction(p: vec3f, reading: Reading) -> f32 {
   return extinction;
 }
 
+// Steps towards the light that grow geometrically and together cover a way: the first one, and the growth. From the
+// first to beyond the last they grow by 1 + spread times the way: long ways need long steps far off, and short ones near.
+fn light_steps_over(way: f32, count: u32, spread_per_m: f32) -> vec2f {
+  let spread = way * spread_per_m;
+  let growth = pow(1.0 + spread, 1.0 / f32(count));
+  return vec2f(select(way * (growth - 1.0) / spread, way / f32(count), spread < 1e-2), select(growth, 1.0, spread < 1e-2));
+}
+
 // Optical depth from a place towards the key light: the only way to ask for the sun's visibility through cloud.
-// Steps grow geometrically, each with its own length (errata 6), sampled in their middle; they cover the reach, or the
-// way out of the domain where that is shorter.
+// Steps have each its own length (errata 6) and are sampled in their middle; they cover the reach, or the way out of the
+// domain where that is shorter.
 fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
-  let way = domain_exit(p, scene.towards_light);
-  var step = scene.first_light_step_m * min(1.0, way / scene.light_reach_m);
+  let way = min(domain_exit(p, scene.towards_light), scene.light_reach_m);
+  let steps = light_steps_over(way, scene.light_steps, scene.light_spread_per_m);
+  var step = steps.x;
   var t = 0.0;
   var depth = 0.0;
   for (var i = 0u; i < scene.light_steps; i++) {
@@ -309,7 +318,7 @@ fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
       break;
     }
     t += step;
-    step *= scene.light_growth;
+    step *= steps.y;
   }
   return depth;
 }

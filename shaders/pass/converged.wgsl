@@ -29,20 +29,20 @@ const OPAQUE: f32 = 0x1p-24;
 // Light steps that were not taken although they should have been.
 var<private> lost: u32;
 
-// Optical depth towards the key light over the whole way out of the domain, in steps that grow from sample to edge by
-// the same factor, to some hundred times the first.
+// How steps towards the light spread: by their way over this length.
+const LIGHT_SPREAD_PER_M: f32 = 0.01;
+
+// Optical depth towards the key light over the whole way out of the domain.
 fn converged_sun_depth(p: vec3f) -> f32 {
-  let way = domain_exit(p, scene.towards_light);
-  let spread = 1.0 + way / 100.0;
-  let growth = pow(spread, 1.0 / f32(truth.light_steps));
-  var step = way * select((growth - 1.0) / (spread - 1.0), 1.0 / f32(truth.light_steps), spread < 1.01);
+  let steps = light_steps_over(domain_exit(p, scene.towards_light), truth.light_steps, LIGHT_SPREAD_PER_M);
+  var step = steps.x;
   var t = 0.0;
   var depth = 0.0;
   var taken = 0u;
   for (var i = 0u; i < truth.light_steps; i++) {
     depth += shadow_extinction(p + scene.towards_light * (t + 0.5 * step), Reading(0.0, true, 0.0)) * step;
     t += step;
-    step *= growth;
+    step *= steps.y;
     taken += 1u;
   }
   lost += truth.light_steps - taken;

@@ -30,7 +30,7 @@ pub(super) struct AccuracyArgs {
     /// Width and height in pixels.
     #[arg(long, value_parser = args::size, default_value = "256x144")]
     size: [u32; 2],
-    /// A parameter of quality and its values, such as quality.light_steps=2,4,8. Several axes make all combinations.
+    /// A parameter of quality and its values, such as `quality.light_steps=2,4,8`. Several axes make all combinations.
     #[arg(long = "axis", value_name = "KEY=VALUES")]
     axes: Vec<String>,
     /// What to measure against.

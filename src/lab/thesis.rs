@@ -118,7 +118,7 @@ fn quality(settings: Settings) -> Quality {
             empty_stride: 2.0,
             light_steps: 6,
             light_reach_m: 1500.0,
-            light_growth: 2.0,
+            light_growth: 1.8,
             light_detail_steps: 6,
             octaves: 0,
             ..defaults

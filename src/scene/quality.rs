@@ -58,11 +58,11 @@ params! {
         /// Greatest distance at which clouds are drawn.
         max_distance_m: f32 = 150_000.0, 1000.0..=500_000.0, Metres, logarithmic;
         /// Steps from a sample towards the light.
-        light_steps: u32 = 5, 1..=128, None;
-        /// Distance covered towards the light.
-        light_reach_m: f32 = 2600.0, 50.0..=20_000.0, Metres, logarithmic;
-        /// Length of each light step relative to the one before.
-        light_growth: f32 = 2.2, 1.0..=4.0, None;
+        light_steps: u32 = 6, 1..=128, None;
+        /// Longest way covered towards the light; shorter where it leaves the clouds before.
+        light_reach_m: f32 = 100_000.0, 50.0..=500_000.0, Metres, logarithmic;
+        /// Length of each light step relative to the one before, over a way of a kilometre; more over longer ways.
+        light_growth: f32 = 1.5, 1.0..=4.0, None;
         /// How many of the light steps read the small noise.
         light_detail_steps: u32 = 0, 0..=128, None;
         /// Octaves of multiple scattering on top of the first. 0 is true single scattering.
@@ -110,7 +110,7 @@ impl Quality {
                 step_depth: 0.5,
                 empty_stride: 2.0,
                 light_steps: 9,
-                light_growth: 1.6,
+                light_growth: 1.35,
                 light_detail_steps: 3,
                 octaves: 6,
                 early_exit: 0.004,
@@ -127,7 +127,7 @@ impl Quality {
                 step_depth: 0.25,
                 empty_stride: 1.5,
                 light_steps: 12,
-                light_growth: 1.45,
+                light_growth: 1.25,
                 light_detail_steps: 6,
                 octaves: 7,
                 early_exit: 0.001,
@@ -140,13 +140,11 @@ impl Quality {
         }
     }
 
-    /// The lengths of all light steps add up to [`Self::light_reach_m`]; this is the first of them.
-    #[allow(clippy::cast_possible_truncation, reason = "parameters are f32; only the sum needs more")]
-    pub fn first_light_step_m(&self) -> f32 {
-        let steps = f64::from(self.light_steps);
-        let growth = f64::from(self.light_growth);
-        let sum = if (growth - 1.0).abs() < 1e-4 { steps } else { (growth.powf(steps) - 1.0) / (growth - 1.0) };
-        (f64::from(self.light_reach_m) / sum) as f32
+    /// How much light steps grow over their whole way, for each metre of it: over a kilometre as [`Self::light_growth`]
+    /// says.
+    pub fn light_spread_per_m(&self) -> f32 {
+        // Steps without end would otherwise begin shorter than f32 can tell.
+        (self.light_growth.powf(self.light_steps as f32) - 1.0).min(1e5) / 1000.0
     }
 }
 
@@ -155,16 +153,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn light_steps_add_up_to_the_reach() {
-        for growth in [1.0, 1.00001, 1.5, 3.0] {
-            let quality = Quality { light_growth: growth, light_steps: 9, ..Quality::default() };
-            let mut step = f64::from(quality.first_light_step_m());
-            let mut sum = 0.0;
-            for _ in 0..9 {
-                sum += step;
-                step *= f64::from(growth);
-            }
-            assert!((sum / f64::from(quality.light_reach_m) - 1.0).abs() < 1e-3, "growth {growth}: {sum}");
-        }
+    fn light_steps_grow_over_a_kilometre_as_they_are_told() {
+        let quality = Quality { light_growth: 1.5, light_steps: 6, ..Quality::default() };
+        let spread = 1.0 + 1000.0 * quality.light_spread_per_m();
+        assert!((spread.powf(1.0 / 6.0) - 1.5).abs() < 1e-4, "{spread}");
+        let extreme = Quality { light_growth: 4.0, light_steps: 128, ..Quality::default() };
+        assert!(extreme.light_spread_per_m().is_finite());
+        assert_eq!(Quality { light_growth: 1.0, ..extreme }.light_spread_per_m(), 0.0, "equal steps");
     }
 }

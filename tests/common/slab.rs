@@ -105,8 +105,6 @@ impl March {
             step_depth: 1e30,
             empty_stride: 1.0,
             light_steps: 8,
-            first_light_step_m: 1e6 / 8.0,
-            light_growth: 1.0,
             light_reach_m: 1e6,
             detail_distance_m: 1e6,
             max_distance_m: 1e6,

@@ -184,8 +184,7 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         step_growth: quality.step_growth,
         empty_stride: quality.empty_stride,
         light_steps: quality.light_steps,
-        first_light_step_m: quality.first_light_step_m(),
-        light_growth: quality.light_growth,
+        light_spread_per_m: quality.light_spread_per_m(),
         light_reach_m: quality.light_reach_m,
         light_detail_steps: quality.light_detail_steps,
         detail_distance_m: quality.detail_distance_m,
@@ -195,6 +194,7 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         pad0: 0.0,
         pad1: 0.0,
         pad2: 0.0,
+        pad3: 0.0,
         layers,
     }
 }

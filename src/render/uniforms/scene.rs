@@ -181,11 +181,9 @@ gpu_struct! {
         pub empty_stride: f32,
         /// Steps towards the light.
         pub light_steps: u32,
-        /// The first of them.
-        pub first_light_step_m: f32,
-        /// Each relative to the one before.
-        pub light_growth: f32,
-        /// Their sum.
+        /// How much they grow over their whole way: by 1 and this for each metre of it.
+        pub light_spread_per_m: f32,
+        /// Longest way they cover.
         pub light_reach_m: f32,
         /// Light steps that read the small noise.
         pub light_detail_steps: u32,
@@ -203,6 +201,8 @@ gpu_struct! {
         pub pad1: f32,
         /// Keeps the layers apart.
         pub pad2: f32,
+        /// Keeps the layers apart.
+        pub pad3: f32,
         /// The layers; as many as the program was compiled for count.
         pub layers: [LayerUniforms; 4],
     }
