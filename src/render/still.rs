@@ -55,8 +55,7 @@ impl Renderer {
         job::submit(&self.gpu, &bakes);
         let lighting = Lighting::new(frame.scene);
         let eye = Eye::new(&frame.scene.camera);
-        let context =
-            Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) };
+        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) };
         let (targets, _) = Targets::fitting(None, &self.gpu, &plan, frame.render_size())?;
         let view = view_uniforms(frame, &plan, &eye, None, &lighting);
         let buffers = frame_buffers(&context, frame, &plan, &view);

@@ -62,13 +62,15 @@ pub enum Refinement {
 
 /// A share in per cent, with as many digits as tell something.
 fn percent(share: f64) -> String {
-    let value = share * 100.0;
-    let digits = match value.abs() {
+    format!("{:.*} %", digits(share), share * 100.0)
+}
+
+fn digits(share: f64) -> usize {
+    match share.abs() * 100.0 {
         small if small < 0.095 => 2,
         middle if middle < 9.95 => 1,
         _ => 0,
-    };
-    format!("{value:.digits$} %")
+    }
 }
 
 impl Refined {
@@ -77,7 +79,7 @@ impl Refined {
         match self.integrator {
             Integrator::PathTraced => {
                 let error = error.map_or_else(String::new, |error| format!(", noise {error}"));
-                format!("{} paths a pixel{error}", self.finished.unwrap_or(0))
+                format!("{} paths a pixel, {:.0} % of more{error}", self.finished.unwrap_or(0), self.share * 100.0)
             }
             _ => {
                 let level = self.finished.map_or(0, |finished| finished + 1);
@@ -134,10 +136,9 @@ fn seconds(value: f64) -> String {
 }
 
 fn estimate(Estimate { value, std_error }: Estimate) -> String {
-    let text = percent(value);
     match std_error {
-        Some(error) => format!("{} ± {}", text.trim_end_matches(" %"), percent(error)),
-        None => text,
+        Some(error) => format!("{:.*} ± {}", digits(error), value * 100.0, percent(error)),
+        None => percent(value),
     }
 }
 
@@ -262,7 +263,12 @@ pub(super) fn choose(ui: &mut Ui, truth: &mut TruthState) {
         for option in Comparison::ALL {
             let response = ui.selectable_label(truth.comparison == *option, option.title());
             let response = response.on_hover_text(option.doc().trim());
-            row::name(ui, &response, &format!("Compare: {}", option.title()), &format!("truth.mode.{}", option.title()));
+            row::name(
+                ui,
+                &response,
+                &format!("Compare: {}", option.title()),
+                &format!("truth.mode.{}", option.title()),
+            );
             if response.clicked() {
                 truth.compare(*option);
             }
@@ -351,8 +357,11 @@ fn controls(ui: &mut Ui, truth: &mut TruthState) {
         }
     });
     let view = &truth.view;
-    if truth.comparison == Comparison::Difference && view.difference.is_some() {
-        legend(ui, truth.is_signed, view.limit);
+    if truth.comparison == Comparison::Difference {
+        match view.difference {
+            Some(_) => legend(ui, truth.is_signed, view.limit),
+            None => drop(ui.weak("The colours come with the first finished picture of the truth.")),
+        }
     }
     let text = view.figures.text().unwrap_or_else(|| "Nothing was measured yet.".to_owned());
     ui.add(egui::Label::new(text).wrap());
@@ -374,8 +383,7 @@ fn legend(ui: &mut Ui, is_signed: bool, limit: f32) {
         const STEPS: u8 = 75;
         for step in 0..STEPS {
             let share = (f32::from(step) + 0.5) / f32::from(STEPS);
-            let [r, g, b] =
-                if is_signed { colormap::diverging(2.0 * share - 1.0) } else { colormap::viridis(share) };
+            let [r, g, b] = if is_signed { colormap::diverging(2.0 * share - 1.0) } else { colormap::viridis(share) };
             let left = rect.left() + rect.width() * f32::from(step) / f32::from(STEPS);
             let cell = Rect::from_min_size(egui::pos2(left, rect.top()), egui::vec2(2.5, rect.height()));
             ui.painter().rect_filled(cell.intersect(rect), 0.0, Color32::from_rgb(r, g, b));
@@ -407,7 +415,10 @@ mod tests {
         let good = Refined { error: Some(0.004), ..converged };
         assert_eq!(text(Refinement::Done(good, true)), "converged within 0.4 %, 12 s");
         assert!(text(Refinement::Done(converged, false)).starts_with("not converged"), "no false claim");
-        assert_eq!(text(Refinement::Working(refined(Integrator::PathTraced))), "refining: 1 paths a pixel, noise 1.3 %");
+        assert_eq!(
+            text(Refinement::Working(refined(Integrator::PathTraced))),
+            "refining: 1 paths a pixel, 40 % of more, noise 1.3 %"
+        );
         assert_eq!(Refinement::Idle.text(), None);
     }
 

@@ -89,7 +89,8 @@ pub(super) fn show(ui: &mut Ui, state: &mut ViewportState, truth: &mut TruthStat
     if let Some(hud) = &state.hud {
         let font = FontId::proportional(15.0);
         let galley = painter.layout_no_wrap(hud.clone(), font, Color32::WHITE);
-        let place = Align2::CENTER_BOTTOM.anchor_size(rect.center_bottom() - Vec2::new(0.0, 14.0 + truth.height), galley.size());
+        let place = Align2::CENTER_BOTTOM
+            .anchor_size(rect.center_bottom() - Vec2::new(0.0, 14.0 + truth.height), galley.size());
         painter.rect_filled(place.expand2(Vec2::new(8.0, 4.0)), 4.0, Color32::from_black_alpha(150));
         painter.galley(place.min, galley, Color32::WHITE);
     }

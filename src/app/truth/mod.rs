@@ -262,9 +262,11 @@ impl Truths {
         self.moment.still.as_ref().and_then(Still::display)
     }
 
-    /// What was measured so far, with the time of one truth.
+    /// What was measured so far, with the time of the truth that it was measured against.
     pub(super) fn figures(&self, reference: Integrator) -> Figures {
-        let truth_secs = self.moment.kept(reference).map(|kept| kept.truth.progress().spent_secs);
+        let is_traced = reference == Integrator::PathTraced && self.moment.figures.traced.is_some();
+        let measured = if is_traced { Integrator::PathTraced } else { Integrator::Converged };
+        let truth_secs = self.moment.kept(measured).map(|kept| kept.truth.progress().spent_secs);
         Figures { truth_secs, ..self.moment.figures.clone() }
     }
 
@@ -326,9 +328,7 @@ impl Moment {
 
 fn goal(integrator: Integrator) -> Goal {
     match integrator {
-        Integrator::PathTraced => {
-            Goal::PathTraced { tolerance: TOLERANCE, samples: PATHS, scatterings: None, seed: 0 }
-        }
+        Integrator::PathTraced => Goal::PathTraced { tolerance: TOLERANCE, samples: PATHS, scatterings: None, seed: 0 },
         _ => Goal::Converged { tolerance: TOLERANCE, levels: LEVELS },
     }
 }

@@ -30,6 +30,9 @@ use settings::change;
 pub use settings::{Goal, Level};
 use tile::{Stage, Tiles};
 
+/// Paths of each pixel below which their spread says too little to stop by.
+const LEAST_SAMPLES: u32 = 8;
+
 /// Work done so far, counted in the shaders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TruthCounts {
@@ -106,8 +109,7 @@ impl Renderer {
         let lighting = Lighting::new(frame.scene);
         let eye = Eye::new(&frame.scene.camera);
         let size = frame.render_size();
-        let context =
-            Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) };
+        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) };
         let (targets, _) = Targets::fitting(None, &self.gpu, &plan, size)?;
         let view = view_uniforms(frame, &plan, &eye, None, &lighting);
         let buffers = frame_buffers(&context, frame, &plan, &view);
@@ -305,7 +307,8 @@ impl Truth {
                     let variance = readback::rgba(&renderer.gpu, variance)?;
                     self.progress.error = Some(settings::standard_error(&composed, &variance));
                 }
-                let is_good = self.progress.error.is_some_and(|error| error <= tolerance);
+                let is_good = self.progress.finished >= LEAST_SAMPLES
+                    && self.progress.error.is_some_and(|error| error <= tolerance);
                 self.progress.is_done = is_good || !tiles.next_level(&renderer.gpu);
             }
         }
