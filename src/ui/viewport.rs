@@ -130,7 +130,9 @@ fn compared(ui: &Ui, rect: Rect, truth: &mut TruthState) -> bool {
             divider(ui, place, truth);
         }
         Comparison::SideBySide => {
-            let (left, right) = rect.split_left_right_at_fraction(0.5);
+            // Half as large there is room for them above the controls.
+            let free = Rect::from_min_max(rect.min, rect.max - Vec2::new(0.0, truth.height.min(0.5 * rect.height())));
+            let (left, right) = free.split_left_right_at_fraction(0.5);
             for (half, picture, name) in [(left, still, "Realtime"), (right, other, reference)] {
                 let place = fitted(half.shrink2(Vec2::new(1.0, 0.0)), picture.size);
                 image(&painter, place, picture.texture);
