@@ -8,8 +8,10 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{Queryable as _, by};
 use nephoscope::app::action::Request;
 use nephoscope::app::{Document, Folders, Session};
+use nephoscope::lab::metrics::{Errors, Estimate};
+use nephoscope::plan::Integrator;
 use nephoscope::scene::{CloudLayer, Preset, Quality, QualityLevel, Scene};
-use nephoscope::ui::{Dialog, Readout};
+use nephoscope::ui::{Comparison, Dialog, Picture, Readout, Refined, Refinement, TruthState};
 
 /// The panels with a session, and what was left for the window to do.
 struct Editor {
@@ -84,6 +86,15 @@ impl Editor {
 
     fn is_disabled(&self, key: &str) -> bool {
         self.harness.query(by().predicate(|node| node.author_id() == Some(key) && node.is_disabled())).is_some()
+    }
+
+    fn truth(&mut self) -> &mut TruthState {
+        &mut self.harness.state_mut().ui.truth
+    }
+
+    fn press(&mut self, key: egui::Key) {
+        self.harness.key_press(key);
+        self.harness.run();
     }
 
     fn toasts(&self) -> Vec<String> {
@@ -351,4 +362,120 @@ fn time_plays_and_returns() {
     editor.click("time.play");
     editor.click("time.reset");
     assert!(!editor.document().is_playing() && editor.document().time_secs() == 0.0);
+}
+
+fn picture(id: u64) -> Picture {
+    Picture { texture: egui::TextureId::User(id), size: [640, 480] }
+}
+
+fn errors(rel_rmse: f64, std_error: f64) -> Errors {
+    let figure = Estimate { value: rel_rmse, std_error: Some(std_error) };
+    Errors {
+        rel_mse: figure,
+        rel_rmse: figure,
+        bias: figure,
+        mean_relative: figure,
+        p95_relative: figure,
+        reference_noise: None,
+        pixels: 5120,
+    }
+}
+
+#[test]
+fn refinement_is_switched_by_its_key_and_in_the_menu() {
+    let mut editor = Editor::new();
+    assert!(editor.truth().refines, "on at first");
+    editor.press(egui::Key::F4);
+    assert!(!editor.truth().refines, "F4 switches it off");
+    editor.click_label("View");
+    editor.harness.get_by_label_contains("Refine the picture at rest").click();
+    editor.harness.run();
+    assert!(editor.truth().refines, "the menu switches it on");
+    editor.press(egui::Key::F1);
+    assert!(editor.has_label("Refine the picture at rest"), "and the sheet lists it");
+}
+
+#[test]
+fn the_status_is_shown_while_there_is_one_and_faults_always() {
+    let mut editor = Editor::new();
+    assert!(!editor.has_label("refining"), "nothing is done");
+    let refined = Refined {
+        integrator: Integrator::Converged,
+        finished: Some(1),
+        share: 0.4,
+        error: Some(0.013),
+        spent_secs: 12.0,
+    };
+    editor.truth().view.refinement = Refinement::Working(refined);
+    editor.harness.run();
+    assert!(editor.has_label("refining: level 2, 40 %, changed 1.3 % last"));
+    editor.truth().view.refinement = Refinement::Done(Refined { error: Some(0.004), ..refined }, true);
+    editor.truth().view.faults = vec!["Fault: 3 rays were cut short".to_owned()];
+    editor.harness.run();
+    assert!(editor.has_label("converged within 0.4 %, 12 s"));
+    assert!(editor.has_label("Fault: 3 rays"), "faults are shown");
+    editor.press(egui::Key::F5);
+    assert!(editor.has_label("Fault: 3 rays"), "also while pictures are compared");
+}
+
+#[test]
+fn the_comparison_is_chosen_in_the_menu_and_over_the_picture() {
+    let mut editor = Editor::new();
+    editor.click_label("View");
+    editor.click_label("Compare: Difference");
+    assert_eq!(editor.truth().comparison, Comparison::Difference);
+    editor.press(egui::Key::Escape);
+    editor.click_label("Absolute difference");
+    assert!(!editor.truth().is_signed);
+    editor.click("truth.reference.Path traced");
+    assert_eq!(editor.truth().reference, Integrator::PathTraced);
+    editor.click_label("Stop and keep");
+    assert!(editor.truth().is_kept);
+    editor.click_label("Continue");
+    assert!(!editor.truth().is_kept);
+    editor.press(egui::Key::F6);
+    assert!(editor.truth().is_kept, "F6 keeps too");
+    editor.press(egui::Key::F5);
+    assert!(!editor.truth().compares() && !editor.has_label("Stop and keep"), "F5 ends it");
+}
+
+#[test]
+fn the_read_out_says_how_far_and_what_it_costs() {
+    let mut editor = Editor::sized([800.0, 600.0]);
+    editor.press(egui::Key::F5);
+    assert!(editor.has_label("Nothing was measured yet"), "no number is made up");
+    let figures = &mut editor.truth().view.figures;
+    figures.converged = Some(Ok(errors(0.032, 0.004)));
+    figures.traced = Some(Ok(errors(0.041, 0.006)));
+    (figures.cost_ms, figures.truth_secs, figures.source) = (Some(310.0), Some(12.4), "serialised host time");
+    editor.harness.run();
+    let text = "What you see is 3.2 ± 0.4 % from converged (4.1 ± 0.6 % from path traced); it costs 310 ms, \
+                the truth 12 s (serialised host time).";
+    assert!(editor.has_label(text));
+    assert!(editor.has_label("over 5120 cloud pixels; the paths’ noise is subtracted"));
+    let screen = editor.harness.ctx.content_rect();
+    let place = editor.harness.get_by_label_contains("What you see").rect();
+    assert!(screen.contains_rect(place), "{place:?} leaves the window");
+}
+
+#[test]
+fn the_divider_is_dragged_without_turning_the_camera() {
+    let mut editor = Editor::new();
+    editor.press(egui::Key::F5);
+    let without = editor.harness.query_by_label_contains("Divider").is_none();
+    assert!(without, "there is nothing to divide yet");
+    editor.harness.state_mut().ui.viewport.picture = Some(picture(1));
+    (editor.truth().view.still, editor.truth().view.truth) = (Some(picture(2)), Some(picture(3)));
+    editor.harness.run();
+    let from = editor.with_key("truth.divider").rect().center();
+    editor.harness.drag_at(from);
+    editor.harness.run();
+    let to = from - egui::vec2(100.0, 0.0);
+    editor.harness.hover_at(to);
+    editor.harness.run();
+    editor.harness.drop_at(to);
+    editor.harness.run();
+    let divider = editor.truth().divider;
+    assert!((0.2..0.45).contains(&divider), "{divider}");
+    assert!(!editor.document().is_modified(), "the camera stays");
 }

@@ -75,7 +75,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   var t = max(ray.distance_m, segments.first.x);
   var steps = 0u;
   var light_steps = 0u;
+  var is_paused = false;
   for (var i = 0u; i < truth.per_dispatch; i++) {
+    if (steps + light_steps >= truth.work_per_dispatch) {
+      is_paused = true;
+      break;
+    }
     if (t >= first_end) {
       t = max(t, segments.second.x);
     }
@@ -110,7 +115,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   }
   if (ray.is_done == 0u) {
     atomicAdd(&counters[0], 1u);
-    lost += truth.per_dispatch - steps;
+    lost += select(truth.per_dispatch - steps, 0u, is_paused);
   }
   ray.opacity = 1.0 - transmittance;
   ray.distance_m = t;

@@ -17,10 +17,27 @@ pub(super) struct Egui {
     context: egui::Context,
     state: egui_winit::State,
     painter: Painter,
-    /// The texture that stands for the picture, and the texture it was made from.
-    picture: Option<(Picture, wgpu::Texture)>,
+    /// The textures that stand for the pictures, and the textures they were made from.
+    pictures: [Option<(Picture, wgpu::Texture)>; Place::COUNT],
     /// How often the device was replaced.
     rebuilt: u32,
+}
+
+/// What a picture of the renderer's is to the panels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// The last finished frame.
+    Frame,
+    /// The realtime picture of all pixels.
+    Still,
+    /// The converged picture.
+    Converged,
+    /// The path-traced picture.
+    Traced,
+}
+
+impl Place {
+    const COUNT: usize = 4;
 }
 
 /// A frame of the panels that was run but not yet drawn.
@@ -48,7 +65,7 @@ impl Egui {
             egui_winit::State::new(context.clone(), egui::ViewportId::ROOT, window, Some(scale), theme, Some(limit));
         state.init_accesskit(event_loop, window, proxy);
         let painter = Painter::new(gpu, format);
-        Self { context, state, painter, picture: None, rebuilt: 0 }
+        Self { context, state, painter, pictures: Default::default(), rebuilt: 0 }
     }
 
     /// The context.
@@ -59,7 +76,7 @@ impl Egui {
     /// Starts over on another device; theme, scale and folded sections stay.
     pub(super) fn rebuild(&mut self, gpu: &Gpu, format: wgpu::TextureFormat) {
         self.painter = Painter::new(gpu, format);
-        self.picture = None;
+        self.pictures = Default::default();
         // The new renderer lacks the fonts' texture. Only other definitions make egui send it anew, so one font gets
         // one more name, which nothing uses.
         self.rebuilt += 1;
@@ -80,19 +97,29 @@ impl Egui {
         self.state.on_accesskit_action_request(request);
     }
 
-    /// Makes the renderer's texture known to egui.
-    pub(super) fn set_picture(&mut self, gpu: &Gpu, texture: Option<&crate::gpu::Texture>) -> Option<Picture> {
-        let Some(texture) = texture else { return self.picture.as_ref().map(|(picture, _)| *picture) };
-        let size = texture.size();
-        let id = match &self.picture {
+    /// Makes a texture of the renderer's known to egui, and lets go of the one that was in its place.
+    pub(super) fn set_picture(
+        &mut self,
+        gpu: &Gpu,
+        place: Place,
+        texture: Option<&crate::gpu::Texture>,
+    ) -> Option<Picture> {
+        let kept = &mut self.pictures[place as usize];
+        let Some(texture) = texture else {
+            if let Some((picture, _)) = kept.take() {
+                self.painter.free_texture(picture.texture);
+            }
+            return None;
+        };
+        let id = match &*kept {
             Some((picture, source)) if *source == texture.texture => picture.texture,
             before => {
                 let id = before.as_ref().map(|(picture, _)| picture.texture);
                 self.painter.register(gpu, &texture.view, id)
             }
         };
-        let picture = Picture { texture: id, size };
-        self.picture = Some((picture, texture.texture.clone()));
+        let picture = Picture { texture: id, size: texture.size() };
+        *kept = Some((picture, texture.texture.clone()));
         Some(picture)
     }
 

@@ -14,6 +14,7 @@ pub mod session;
 mod statistics;
 mod storage;
 mod surface;
+mod truth;
 mod viewport;
 mod window;
 mod worker;

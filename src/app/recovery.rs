@@ -53,9 +53,10 @@ impl Recovery {
         let _ = std::fs::remove_file(&self.path);
     }
 
-    /// Time until the next look, for the event loop.
-    pub(super) fn due_in(&self) -> Duration {
-        PERIOD.saturating_sub(self.last.elapsed())
+    /// Time until the next look, for the event loop; `None` if it would change nothing, so that an idle window sleeps.
+    pub(super) fn due_in(&self, document: &Document) -> Option<Duration> {
+        let wanted = document.is_modified().then_some(document.preset());
+        (wanted != self.written.as_ref()).then(|| PERIOD.saturating_sub(self.last.elapsed()))
     }
 }
 
@@ -76,6 +77,9 @@ mod tests {
         recovery.keep(&document);
         let (_, left) = Recovery::open(&state);
         assert_eq!(left.expect("a copy").name, "Storm");
+        assert_eq!(recovery.due_in(&document), None, "the copy is as new as the work");
+        document.apply(&Action::Rename("Storms".to_owned()));
+        assert!(recovery.due_in(&document).is_some(), "it is no longer");
         document.mark_saved(folder.path().join("storm.ron"));
         recovery.keep(&document);
         assert!(Recovery::open(&state).1.is_none(), "saved work needs no copy");

@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::document::Document;
 use super::statistics::Statistics;
+use super::truth::{CompareJob, Outcome, Truths, Wishes};
 use crate::gpu::Gpu;
 use crate::plan::FramePlan;
 use crate::render::{Progress, RenderError, Renderer};
@@ -21,11 +22,11 @@ const SETTLED: Duration = Duration::from_millis(150);
 
 /// Everything a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
-struct Inputs {
-    scene: Scene,
-    quality: Quality,
-    size: [u32; 2],
-    time_secs: f64,
+pub(super) struct Inputs {
+    pub(super) scene: Scene,
+    pub(super) quality: Quality,
+    pub(super) size: [u32; 2],
+    pub(super) time_secs: f64,
 }
 
 /// What a step of the viewport led to.
@@ -55,6 +56,9 @@ pub(super) struct Viewport {
     refused: Option<Inputs>,
     compiling: bool,
     pub(super) statistics: Statistics,
+    pub(super) truths: Truths,
+    /// Whether what the truths were made from has changed since it was last asked.
+    has_moved_on: bool,
 }
 
 impl Viewport {
@@ -69,6 +73,8 @@ impl Viewport {
             refused: None,
             compiling: false,
             statistics: Statistics::default(),
+            truths: Truths::new(),
+            has_moved_on: false,
         })
     }
 
@@ -85,6 +91,7 @@ impl Viewport {
             size,
             time_secs: document.time_secs(),
         };
+        self.has_moved_on |= self.truths.follow(&inputs, Instant::now());
         if self.refused.as_ref() == Some(&inputs) {
             return Ok(Step::Idle);
         }
@@ -153,6 +160,24 @@ impl Viewport {
         }
     }
 
+    /// Lets the truths take a turn, after a step that left nothing to do.
+    pub(super) fn refine(&mut self, wishes: Wishes) -> Result<Outcome, RenderError> {
+        if self.left > 0 || self.refused.is_some() || self.renderer.display().is_none() {
+            return Ok(Outcome::default());
+        }
+        self.truths.turn(&mut self.renderer, wishes)
+    }
+
+    /// The next pictures to compare, if there are new ones.
+    pub(super) fn comparison(&mut self) -> Result<Option<CompareJob>, RenderError> {
+        self.truths.comparison(&self.renderer)
+    }
+
+    /// Whether the picture depends on something else than when this was asked before.
+    pub(super) fn has_moved_on(&mut self) -> bool {
+        std::mem::take(&mut self.has_moved_on)
+    }
+
     /// Whether shaders are being compiled.
     pub(super) fn is_compiling(&self) -> bool {
         self.compiling
@@ -163,7 +188,7 @@ impl Viewport {
         Readout {
             adapter: self.renderer.gpu().description(),
             size: self.renderer.display().map(crate::gpu::Texture::size).unwrap_or_default(),
-            memory_bytes: self.renderer.memory_bytes(),
+            memory_bytes: self.renderer.memory_bytes() + self.truths.bytes(),
             ..self.statistics.readout()
         }
     }

@@ -1,5 +1,7 @@
 //! The window and its event loop: who is woken when, and what is drawn then.
 
+mod truth;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -10,7 +12,7 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy}
 use winit::window::{Fullscreen, Window, WindowId};
 
 use super::action::{Browse, Export, Request, Still};
-use super::egui_glue::Egui;
+use super::egui_glue::{Egui, Place};
 use super::hands::Hands;
 use super::recovery::Recovery;
 use super::surface::WindowSurface;
@@ -147,6 +149,9 @@ impl ApplicationHandler<Event> for App {
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(live) = &mut self.live else { return };
+        if truth::is_input(&event) {
+            live.viewport.truths.touch(Instant::now());
+        }
         match &event {
             WindowEvent::CloseRequested => {
                 self.perform(event_loop, Action::Ask(Request::Quit));
@@ -185,6 +190,7 @@ impl ApplicationHandler<Event> for App {
         match event {
             Event::Accessibility(event) => self.accessibility(event),
             Event::Worker(message) => self.report(event_loop, message),
+            Event::Compared(compared) => self.take_comparison(*compared),
         }
         if let Some(live) = &mut self.live {
             live.draw_within(Duration::ZERO);
@@ -235,22 +241,23 @@ impl App {
     fn work(&mut self) -> Option<Instant> {
         let live = self.live.as_mut()?;
         let now = Instant::now();
-        let mut wake = now + self.recovery.due_in();
+        let mut wake = self.recovery.due_in(&self.session.document).map(|due| now + due);
         if !live.is_drawable() {
-            return Some(wake);
+            return wake;
         }
+        let mut is_idle = false;
         let size = self.session.ui.viewport.size_px(live.egui.context().pixels_per_point());
         let mut fastest = FASTEST_PANELS;
         if self.session.ui.viewport.rect.width() >= 1.0 && self.session.ui.viewport.rect.height() >= 1.0 {
             match live.viewport.step(&self.session.document, size) {
-                Ok(Step::Idle) => {}
+                Ok(Step::Idle) => is_idle = true,
                 Ok(Step::Busy) => {
                     fastest = FASTEST_PANELS_BESIDE_WORK;
-                    wake = wake.min(now + POLL);
+                    wake = sooner(wake, now + POLL);
                 }
                 Ok(Step::Finished) => {
                     live.draw_within(Duration::ZERO);
-                    wake = now;
+                    wake = Some(now);
                 }
                 Err(error) => {
                     self.session.ui.toasts.error(error);
@@ -259,17 +266,25 @@ impl App {
             }
         }
         if self.session.document.is_playing() || live.hands.are_busy() {
-            wake = wake.min(now + 5 * POLL);
+            wake = sooner(wake, now + 5 * POLL);
+        }
+        let refined = self.refine(is_idle);
+        if refined.has_worked {
+            fastest = FASTEST_PANELS_BESIDE_WORK;
+        }
+        if let Some(turn) = refined.wake {
+            wake = sooner(wake, turn);
         }
         let live = self.live.as_mut()?;
+        let now = Instant::now();
         if let Some(due) = live.due {
             let due = due.max(live.drawn + fastest);
             if due <= now {
                 live.window.request_redraw();
             }
-            wake = wake.min(due.max(now + POLL));
+            wake = sooner(wake, due.max(now + POLL));
         }
-        Some(wake)
+        wake
     }
 
     /// Draws the panels and the last finished picture, and does what the user wants.
@@ -280,10 +295,11 @@ impl App {
         }
         let begun = Instant::now();
         live.due = None;
+        live.show_truth(&mut self.session);
         let Some(surface) = &mut live.surface else { return };
         surface.follow_window(&live.gpu);
         let viewport = &mut self.session.ui.viewport;
-        viewport.picture = live.egui.set_picture(&live.gpu, live.viewport.renderer().display());
+        viewport.picture = live.egui.set_picture(&live.gpu, Place::Frame, live.viewport.renderer().display());
         let compiling = live.viewport.is_compiling();
         viewport.status = if compiling { "Compiling shaders…" } else { "Preparing the sky…" }.to_owned();
         let readout = if self.session.ui.show_overlay { live.viewport.readout() } else { Readout::default() };
@@ -370,7 +386,7 @@ impl App {
             self.session.ui.toasts.error("There is no picture to save yet; wait for the first one");
             return;
         }
-        match live.viewport.renderer().display_rgba8() {
+        match live.shown_rgba8(&self.session) {
             Ok(image) => {
                 let document = &self.session.document;
                 let still = StillJob {
@@ -436,6 +452,11 @@ impl App {
             self.fail(event_loop, error);
         }
     }
+}
+
+/// The earlier of two times to wake up.
+fn sooner(wake: Option<Instant>, other: Instant) -> Option<Instant> {
+    Some(wake.map_or(other, |wake| wake.min(other)))
 }
 
 impl Live {

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use winit::event_loop::EventLoopProxy;
 
 use super::action::{Browse, Export, Still};
+use super::truth::{CompareJob, Compared};
 use crate::export::exr::ExrOptions;
 use crate::files::{About, save_exr, save_png};
 use crate::gpu::Gpu;
@@ -20,6 +21,8 @@ pub(super) enum Event {
     Accessibility(egui_winit::accesskit_winit::Event),
     /// A thread has finished.
     Worker(Message),
+    /// Pictures were compared.
+    Compared(Box<Compared>),
 }
 
 impl From<egui_winit::accesskit_winit::Event> for Event {
@@ -77,6 +80,18 @@ impl Worker {
     /// A worker that reports to this loop.
     pub(super) fn new(proxy: EventLoopProxy<Event>) -> Self {
         Self { proxy }
+    }
+
+    /// Compares two pictures.
+    pub(super) fn compare(&self, job: CompareJob) {
+        let proxy = self.proxy.clone();
+        let compare = move || {
+            // As above: whoever does not wait has closed the window.
+            let _ = proxy.send_event(Event::Compared(Box::new(job.run())));
+        };
+        if let Err(error) = std::thread::Builder::new().name("compare".to_owned()).spawn(compare) {
+            let _ = self.proxy.send_event(Event::Worker(Message::Failed(format!("no thread for comparing: {error}"))));
+        }
     }
 
     fn spawn(&self, name: &str, work: impl FnOnce() -> Message + Send + 'static) {

@@ -13,6 +13,7 @@ pub mod pass;
 mod passes;
 mod schedule;
 pub mod shaders;
+mod still;
 mod targets;
 pub mod truth;
 pub mod uniforms;
@@ -33,6 +34,7 @@ use uniforms::Eye;
 use weather::WeatherMap;
 
 pub use output::{Counts, LinearImage};
+pub use still::Still;
 
 /// Every program that a frame of this plan may ask for, bakes and the clear sky included.
 pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {

@@ -1,7 +1,7 @@
 //! Finished pictures, and counted work, back on the processor.
 
 use super::{FrameReport, RenderError, Renderer};
-use crate::gpu::{job, readback};
+use crate::gpu::{Texture, job, readback};
 use crate::plan::FramePlan;
 use crate::scene::Frame;
 
@@ -38,10 +38,15 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Gpu`] if the device fails.
     pub fn display_rgba8(&self) -> Result<([u32; 2], Vec<u8>), RenderError> {
-        match &self.shown {
-            Some(texture) => Ok((texture.size(), readback::texture(&self.gpu, texture)?)),
-            None => Ok(([0, 0], Vec::new())),
-        }
+        self.shown.as_ref().map_or(Ok(([0, 0], Vec::new())), |texture| self.rgba8_of(texture))
+    }
+
+    /// The same of any picture that is shown, such as a truth's.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] if the device fails.
+    pub fn rgba8_of(&self, shown: &Texture) -> Result<([u32; 2], Vec<u8>), RenderError> {
+        Ok((shown.size(), readback::texture(&self.gpu, shown)?))
     }
 
     /// The light of the last frame rendered with a linear output.

@@ -39,6 +39,12 @@ pub enum Command {
     Panel,
     /// Timing overlay on or off.
     Overlay,
+    /// Refinement at rest on or off.
+    Refine,
+    /// Comparison with the truth on or off.
+    Compare,
+    /// Stop accumulating and keep the picture, or go on.
+    Keep,
     /// Everything but the picture off or on.
     HideAll,
     /// Full screen on or off.
@@ -52,7 +58,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 19] = [
+const TABLE: [(Command, Modifiers, Key, &str); 22] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -69,6 +75,9 @@ const TABLE: [(Command, Modifiers, Key, &str); 19] = [
     (Command::Presets, Modifiers::NONE, Key::F2, "Preset list"),
     (Command::Panel, Modifiers::NONE, Key::F3, "Parameter panel"),
     (Command::Overlay, Modifiers::NONE, Key::F10, "Timing overlay"),
+    (Command::Refine, Modifiers::NONE, Key::F4, "Refine the picture at rest"),
+    (Command::Compare, Modifiers::NONE, Key::F5, "Compare with the truth"),
+    (Command::Keep, Modifiers::NONE, Key::F6, "Stop refining and keep the picture"),
     (Command::HideAll, Modifiers::NONE, Key::Tab, "Hide the panels"),
     (Command::FullScreen, Modifiers::NONE, Key::F11, "Full screen"),
     (Command::Theme, CTRL_SHIFT, Key::L, "Light or dark"),
@@ -76,7 +85,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 19] = [
 ];
 
 /// What mice and held keys do, for the sheet.
-pub(super) const GESTURES: [(&str, &str); 9] = [
+pub(super) const GESTURES: [(&str, &str); 10] = [
     ("Right mouse held", "Look around"),
     ("… with W A S D", "Fly forwards, left, back, right"),
     ("… with Q E", "Fly down, up"),
@@ -84,6 +93,7 @@ pub(super) const GESTURES: [(&str, &str); 9] = [
     ("… with Shift, Ctrl", "Five times faster, slower"),
     ("Middle mouse, Shift+left", "Orbit the point ahead"),
     ("L and left mouse", "Move the sun"),
+    ("T held", "Show the truth while pictures are compared by Flip"),
     ("Ctrl+F", "Filter parameters"),
     ("Ctrl and + − 0", "Size of the panels"),
 ];
@@ -132,6 +142,9 @@ impl Command {
             Self::Presets => state.show_presets = Some(!state.presets_visible(ui.ctx().content_rect().width())),
             Self::Panel => state.show_panel = !state.show_panel,
             Self::Overlay => state.show_overlay = !state.show_overlay,
+            Self::Refine => state.truth.refines = !state.truth.refines,
+            Self::Compare => state.truth.toggle(),
+            Self::Keep => state.truth.is_kept = !state.truth.is_kept,
             Self::HideAll => {
                 state.hide_all = !state.hide_all;
                 // egui has taken the same key for the next widget.
@@ -148,6 +161,16 @@ impl Command {
                 let open = state.dialog == Some(Dialog::Shortcuts);
                 state.dialog = if open { None } else { Some(Dialog::Shortcuts) };
             }
+        }
+    }
+
+    /// Whether it is a switch that is on.
+    pub(super) fn is_on(self, state: &State) -> bool {
+        match self {
+            Self::Refine => state.truth.refines,
+            Self::Compare => state.truth.compares(),
+            Self::Keep => state.truth.is_kept,
+            _ => false,
         }
     }
 

@@ -9,6 +9,7 @@ mod probe;
 mod row;
 mod toasts;
 mod top_bar;
+mod truth;
 mod viewport;
 
 pub use command::Command;
@@ -18,6 +19,7 @@ pub use panel::PanelState;
 pub use presets::{Entry, Library};
 pub use probe::set_file_in;
 pub use toasts::{Level, Toasts};
+pub use truth::{Comparison, Figures, Refined, Refinement, TruthState, TruthView};
 pub use viewport::{Gesture, Picture, ViewportState};
 
 use egui::{Margin, Theme, Ui};
@@ -49,6 +51,8 @@ pub struct State {
     pub library: Library,
     /// The picture and what is done to it.
     pub viewport: ViewportState,
+    /// Refinement and comparison with the truth.
+    pub truth: TruthState,
     /// What a thread is busy with, for the status line.
     pub busy: Option<String>,
 }
@@ -65,6 +69,7 @@ impl Default for State {
             toasts: Toasts::default(),
             library: Library::default(),
             viewport: ViewportState::default(),
+            truth: TruthState::default(),
             busy: None,
         }
     }
@@ -127,11 +132,14 @@ pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Reado
         }
     }
     let central = egui::CentralPanel::no_frame().show(ui, |ui| {
-        viewport::show(ui, &mut state.viewport, document);
+        viewport::show(ui, &mut state.viewport, &mut state.truth, document);
     });
     let area = central.response.rect;
     if state.show_overlay && !state.hide_all {
         overlay::show(ui.ctx(), area, readout);
+    }
+    if !state.hide_all {
+        truth::show(ui.ctx(), area, state);
     }
     dialogs::show(ui.ctx(), state, document, &mut actions);
     state.toasts.show(ui.ctx(), area);

@@ -37,25 +37,27 @@ fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<
             &[Command::Screenshot, Command::Export],
             &[Command::Quit],
         ];
-        entries(ui, &groups, &mut chosen);
+        entries(ui, state, &groups, &mut chosen);
     });
     ui.menu_button("View", |ui| {
         let groups = [
             &[Command::Presets, Command::Panel, Command::Overlay][..],
             &[Command::HideAll, Command::FullScreen],
             &[Command::ResetCamera, Command::Brighter, Command::Darker],
+            &[Command::Refine, Command::Keep, Command::Compare],
         ];
-        entries(ui, &groups, &mut chosen);
+        entries(ui, state, &groups, &mut chosen);
+        super::truth::choose(ui, &mut state.truth);
         ui.separator();
         theme_and_scale(ui);
     });
-    ui.menu_button("Help", |ui| entries(ui, &[&[Command::Shortcuts]], &mut chosen));
+    ui.menu_button("Help", |ui| entries(ui, state, &[&[Command::Shortcuts]], &mut chosen));
     if let Some(command) = chosen {
         command.run(ui, state, document, actions);
     }
 }
 
-fn entries(ui: &mut Ui, groups: &[&[Command]], chosen: &mut Option<Command>) {
+fn entries(ui: &mut Ui, state: &State, groups: &[&[Command]], chosen: &mut Option<Command>) {
     ui.set_min_width(230.0);
     for (index, group) in groups.iter().enumerate() {
         if index > 0 {
@@ -63,7 +65,8 @@ fn entries(ui: &mut Ui, groups: &[&[Command]], chosen: &mut Option<Command>) {
         }
         for command in *group {
             let keys = command.keys(ui.ctx());
-            if ui.add(egui::Button::new(command.title()).shortcut_text(keys)).clicked() {
+            let button = egui::Button::new(command.title()).shortcut_text(keys).selected(command.is_on(state));
+            if ui.add(button).clicked() {
                 *chosen = Some(*command);
                 ui.close();
             }

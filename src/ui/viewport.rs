@@ -2,7 +2,9 @@
 
 use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 
+use super::truth::{Comparison, TruthState};
 use crate::app::document::Document;
+use crate::scene::param::Choice;
 
 /// What the picture lies on: a middle grey that changes no colour's looks, in both themes.
 const SURROUND: Color32 = Color32::from_gray(72);
@@ -64,17 +66,20 @@ impl ViewportState {
 }
 
 /// Draws the picture and notes the gestures.
-pub(super) fn show(ui: &mut Ui, state: &mut ViewportState, document: &Document) {
+pub(super) fn show(ui: &mut Ui, state: &mut ViewportState, truth: &mut TruthState, document: &Document) {
     let rect = ui.available_rect_before_wrap();
     state.rect = rect;
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     super::row::name(ui, &response, &format!("Sky: {}", document.name()), "viewport");
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 0.0, SURROUND);
-    match state.picture {
+    // At rest the refined picture stands for the realtime one; while pictures are compared, that of all pixels does.
+    let plain = if truth.compares() { truth.view.still } else { truth.view.refined };
+    match plain.or(state.picture) {
         Some(picture) => {
-            let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-            painter.image(picture.texture, fitted(rect, picture.size), uv, Color32::WHITE);
+            if !compared(ui, rect, truth) {
+                image(&painter, fitted(rect, picture.size), picture.texture);
+            }
         }
         None => {
             let font = FontId::proportional(16.0);
@@ -84,11 +89,98 @@ pub(super) fn show(ui: &mut Ui, state: &mut ViewportState, document: &Document) 
     if let Some(hud) = &state.hud {
         let font = FontId::proportional(15.0);
         let galley = painter.layout_no_wrap(hud.clone(), font, Color32::WHITE);
-        let place = Align2::CENTER_BOTTOM.anchor_size(rect.center_bottom() - Vec2::new(0.0, 14.0), galley.size());
+        let place = Align2::CENTER_BOTTOM
+            .anchor_size(rect.center_bottom() - Vec2::new(0.0, 14.0 + truth.height), galley.size());
         painter.rect_filled(place.expand2(Vec2::new(8.0, 4.0)), 4.0, Color32::from_black_alpha(150));
         painter.galley(place.min, galley, Color32::WHITE);
     }
     gestures(ui, &response, &mut state.gestures);
+}
+
+fn image(painter: &egui::Painter, place: Rect, texture: egui::TextureId) {
+    let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+    painter.image(texture, place, uv, Color32::WHITE);
+}
+
+/// Says in an upper corner whose picture it is.
+fn caption(painter: &egui::Painter, place: Rect, text: &str, corner: Align2) {
+    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(13.0), Color32::WHITE);
+    let inner = place.shrink2(Vec2::new(14.0, 10.0));
+    let at = corner.anchor_size(corner.pos_in_rect(&inner), galley.size());
+    painter.rect_filled(at.expand2(Vec2::new(6.0, 3.0)), 4.0, Color32::from_black_alpha(150));
+    painter.galley(at.min, galley, Color32::WHITE);
+}
+
+/// Draws the two pictures that are compared, as far as they are there; `false` if that is nothing.
+fn compared(ui: &Ui, rect: Rect, truth: &mut TruthState) -> bool {
+    let (Some(still), Some(other)) = (truth.view.still, truth.view.truth) else { return false };
+    let painter = ui.painter_at(rect);
+    let place = fitted(rect, still.size);
+    let reference = truth.reference.title();
+    match truth.comparison {
+        Comparison::Off => return false,
+        Comparison::Wipe => {
+            let x = place.left() + place.width() * truth.divider;
+            let right = Rect::from_min_max(Pos2::new(x, place.top()), place.max);
+            image(&painter, place, still.texture);
+            image(&painter.with_clip_rect(right.intersect(rect)), place, other.texture);
+            let left = Rect::from_min_max(place.min, Pos2::new(x, place.bottom()));
+            caption(&painter.with_clip_rect(left.intersect(rect)), left, "Realtime", Align2::RIGHT_TOP);
+            caption(&painter.with_clip_rect(right.intersect(rect)), right, reference, Align2::LEFT_TOP);
+            divider(ui, place, truth);
+        }
+        Comparison::SideBySide => {
+            // Half as large there is room for them above the controls.
+            let free = Rect::from_min_max(rect.min, rect.max - Vec2::new(0.0, truth.height.min(0.5 * rect.height())));
+            let (left, right) = free.split_left_right_at_fraction(0.5);
+            for (half, picture, name) in [(left, still, "Realtime"), (right, other, reference)] {
+                let place = fitted(half.shrink2(Vec2::new(1.0, 0.0)), picture.size);
+                image(&painter, place, picture.texture);
+                caption(&painter, place, name, Align2::CENTER_TOP);
+            }
+        }
+        Comparison::Flip => {
+            let typing = ui.ctx().egui_wants_keyboard_input();
+            let flipped = !typing && ui.input(|input| input.key_down(egui::Key::T));
+            image(&painter, place, if flipped { other.texture } else { still.texture });
+            caption(&painter, place, if flipped { reference } else { "Realtime" }, Align2::CENTER_TOP);
+        }
+        Comparison::Difference => {
+            let Some([signed, absolute]) = &truth.view.difference else { return false };
+            image(&painter, place, if truth.is_signed { signed.texture } else { absolute.texture });
+        }
+    }
+    true
+}
+
+/// The line between the two pictures, and what moves it: the mouse, or the arrow keys when it has the focus.
+fn divider(ui: &Ui, place: Rect, truth: &mut TruthState) {
+    let x = place.left() + place.width() * truth.divider;
+    let grip = Rect::from_center_size(Pos2::new(x, place.center().y), Vec2::new(12.0, place.height()));
+    let response = ui.interact(grip, ui.scope_id().with("divider"), Sense::click_and_drag());
+    let response = response.on_hover_and_drag_cursor(egui::CursorIcon::ResizeHorizontal);
+    ui.ctx().accesskit_node_builder(response.id, |node| {
+        node.set_role(egui::accesskit::Role::Splitter);
+        node.set_label("Divider between realtime and truth");
+        node.set_author_id("truth.divider");
+    });
+    if response.clicked() {
+        response.request_focus();
+    }
+    let mut moved = response.drag_delta().x;
+    if response.has_focus() {
+        let filter = egui::EventFilter { horizontal_arrows: true, ..Default::default() };
+        ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+        let pressed = |key| ui.input(|input| input.key_pressed(key));
+        moved += 0.01 * place.width() * f32::from(i8::from(pressed(egui::Key::ArrowRight)));
+        moved -= 0.01 * place.width() * f32::from(i8::from(pressed(egui::Key::ArrowLeft)));
+    }
+    truth.divider = (truth.divider + moved / place.width().max(1.0)).clamp(0.0, 1.0);
+    let x = place.left() + place.width() * truth.divider;
+    let width = if response.hovered() || response.dragged() || response.has_focus() { 3.0 } else { 1.5 };
+    let painter = ui.painter_at(place);
+    painter.vline(x, place.y_range(), egui::Stroke::new(width + 2.0, Color32::from_black_alpha(110)));
+    painter.vline(x, place.y_range(), egui::Stroke::new(width, Color32::WHITE));
 }
 
 fn gestures(ui: &Ui, response: &egui::Response, gestures: &mut Vec<Gesture>) {

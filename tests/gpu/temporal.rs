@@ -1,10 +1,13 @@
 //! Temporal reprojection: a still sky becomes the full picture bit for bit, edits start over, and poison heals.
 
+use std::time::Duration;
+
 use bytemuck::Zeroable as _;
 use glam::{UVec2, Vec3};
 use nephoscope::gpu::{ProgramKey, Texture, readback};
 use nephoscope::plan::UpdatePattern;
 use nephoscope::render::Renderer;
+use nephoscope::render::truth::Goal;
 use nephoscope::render::uniforms::scene::ViewUniforms;
 use nephoscope::scene::{Frame, Output, Quality, Scene, UpdateFraction, UpdateOrder};
 
@@ -249,4 +252,34 @@ fn poison_in_a_fresh_ray_is_not_kept() {
             }
         }
     }
+}
+
+#[test]
+fn a_truth_between_two_frames_leaves_their_history_alone() {
+    let scene = cloudy();
+    let size = [48, 27];
+    let quality = updating(UpdateFraction::Sixteenth, UpdateOrder::Cross);
+    let whole = Frame { output: Output::Linear, ..frame(&scene, &quality, size, Output::Display) };
+    let frames = |with_truth: bool| {
+        let mut renderer = renderer();
+        for _ in 0..3 {
+            show(&mut renderer, &scene, &quality, size);
+        }
+        if with_truth {
+            let mut still = renderer.begin_still(&whole).expect("the still begins");
+            while !still.advance(&renderer, Duration::from_secs(1)).expect("it goes on") {}
+            assert!(still.total_ms().is_some_and(|millis| millis > 0.0), "it was timed");
+            let goal = Goal::Converged { tolerance: 0.01, levels: 2 };
+            let mut truth = renderer.begin_truth(&whole, goal).expect("the truth begins");
+            assert!(truth.display().is_none(), "nothing is finished yet");
+            let slice = Duration::from_millis(5);
+            while truth.display().is_none() {
+                truth.advance(&renderer, slice, slice).expect("it goes on");
+            }
+            let counts = truth.progress().counts;
+            assert_eq!([counts.exceeded, counts.cut], [0, 0], "no fault");
+        }
+        bits(&show(&mut renderer, &scene, &quality, size))
+    };
+    assert_eq!(frames(true), frames(false), "the fourth frame takes over from the third either way");
 }

@@ -11,12 +11,14 @@
 mod settings;
 mod tile;
 
+use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use super::context::Context;
 use super::pass::sky::SkyInputs;
 use super::passes::{FrameBuffers, Passes, field_key, view_of};
 use super::schedule::{frame_buffers, view_uniforms};
+use super::still::{JOB_MS, read_back};
 use super::targets::Targets;
 use super::uniforms::{self, Eye};
 use super::{LinearImage, RenderError, Renderer};
@@ -27,6 +29,9 @@ use crate::scene::Frame;
 use settings::change;
 pub use settings::{Goal, Level};
 use tile::{Stage, Tiles};
+
+/// Paths of each pixel below which their spread says too little to stop by.
+const LEAST_SAMPLES: u32 = 8;
 
 /// Work done so far, counted in the shaders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -80,7 +85,7 @@ pub struct Truth {
     candela_per_unit: f32,
     tiles: Option<Tiles>,
     /// Sky, ground and shadows, still to be made.
-    prepare: Vec<Job>,
+    prepare: VecDeque<Job>,
     /// From the buffers to the finished picture.
     finish: Vec<Job>,
     variance: Option<Texture>,
@@ -98,11 +103,13 @@ impl Renderer {
         self.finish_interactive()?;
         let integrator = goal.integrator();
         let plan = FramePlan::for_truth(frame, integrator);
-        let mut prepare = self.schedule_bakes(frame, &plan, None)?;
+        // Whoever gives the truth up must not leave tables half made.
+        let bakes = self.schedule_bakes(frame, &plan, None)?;
+        job::submit(&self.gpu, &bakes);
         let lighting = Lighting::new(frame.scene);
         let eye = Eye::new(&frame.scene.camera);
         let size = frame.render_size();
-        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: None };
+        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) };
         let (targets, _) = Targets::fitting(None, &self.gpu, &plan, size)?;
         let view = view_uniforms(frame, &plan, &eye, None, &lighting);
         let buffers = frame_buffers(&context, frame, &plan, &view);
@@ -111,7 +118,7 @@ impl Renderer {
             Passes { context: &context, plan: &plan, targets: &targets, shared, buffers: &buffers, jobs: Vec::new() };
         passes.cloud_shadow()?;
         passes.background()?;
-        prepare.append(&mut passes.jobs);
+        let prepare = std::mem::take(&mut passes.jobs).into();
         passes.sunshafts(targets.marched.as_ref())?;
         passes.finish(targets.marched.as_ref(), &targets.display[0])?;
         let after = std::mem::take(&mut passes.jobs);
@@ -157,7 +164,7 @@ impl Renderer {
         let mut seen = None;
         if truth.integrator == Integrator::PathTraced {
             let (view, air, job) = self.sky.seen_from(gpu, &self.programs, sky, sky.cloud_altitude_m)?;
-            truth.prepare.push(job);
+            truth.prepare.push_back(job);
             truth.variance =
                 Some(Texture::new_2d(gpu, "variance", truth.targets.size(), wgpu::TextureFormat::Rgba32Float)?);
             seen = Some((view, air));
@@ -216,6 +223,12 @@ pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
     integrators.into_iter().flat_map(|which| [program(which, march), resolve_program(which, march)]).collect()
 }
 
+/// The same for one integrator; none for the march itself.
+pub(super) fn programs_of(plan: &FramePlan, integrator: Integrator) -> Vec<ProgramKey> {
+    let march = plan.march.filter(|_| integrator != Integrator::Realtime);
+    march.map_or_else(Vec::new, |march| vec![program(integrator, march), resolve_program(integrator, march)])
+}
+
 impl Truth {
     /// Which integrator it uses.
     pub fn integrator(&self) -> Integrator {
@@ -250,9 +263,13 @@ impl Truth {
     ) -> Result<Convergence, RenderError> {
         let started = Instant::now();
         let gpu = &renderer.gpu;
-        if !self.prepare.is_empty() {
-            job::submit(gpu, &std::mem::take(&mut self.prepare));
+        while let Some(next) = self.prepare.pop_front() {
+            job::submit(gpu, &[next]);
             gpu.wait()?;
+            if started.elapsed() >= budget {
+                self.progress.spent_secs += started.elapsed().as_secs_f64();
+                return Ok(self.progress);
+            }
         }
         while !self.progress.is_done && started.elapsed() < budget {
             let Some(tiles) = &mut self.tiles else { break };
@@ -290,7 +307,8 @@ impl Truth {
                     let variance = readback::rgba(&renderer.gpu, variance)?;
                     self.progress.error = Some(settings::standard_error(&composed, &variance));
                 }
-                let is_good = self.progress.error.is_some_and(|error| error <= tolerance);
+                let is_good = self.progress.finished >= LEAST_SAMPLES
+                    && self.progress.error.is_some_and(|error| error <= tolerance);
                 self.progress.is_done = is_good || !tiles.next_level(&renderer.gpu);
             }
         }
@@ -305,23 +323,28 @@ impl Truth {
     /// [`RenderError::Gpu`] if the device fails.
     pub fn picture(&mut self, renderer: &Renderer) -> Result<TruthPicture, RenderError> {
         let gpu = &renderer.gpu;
-        job::submit(gpu, &std::mem::take(&mut self.prepare));
+        job::submit(gpu, self.prepare.make_contiguous());
+        self.prepare.clear();
         job::submit(gpu, &self.finish);
-        let candela_per_unit = self.candela_per_unit;
-        let rgba = match &self.targets.linear {
-            Some(linear) => readback::rgba(gpu, linear)?,
-            None => Vec::new(),
-        };
-        let (clouds, distance_m) = match &self.targets.marched {
-            Some(cloud) => (readback::rgba(gpu, &cloud.light)?, readback::scalars(gpu, &cloud.distance)?),
-            None => (vec![[0.0, 0.0, 0.0, 1.0]; rgba.len()], vec![0.0; rgba.len()]),
-        };
+        self.finished_picture(renderer)
+    }
+
+    /// The light of the last finished level or batch of samples, read back, whatever was begun since.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] if the device fails.
+    pub fn finished_picture(&self, renderer: &Renderer) -> Result<TruthPicture, RenderError> {
+        let picture = read_back(&self.targets, renderer, self.candela_per_unit)?;
         let variance = match &self.variance {
-            Some(variance) => readback::rgba(gpu, variance)?,
+            Some(variance) => readback::rgba(&renderer.gpu, variance)?,
             None => Vec::new(),
         };
-        let image = LinearImage { size: self.targets.size(), rgba, distance_m, candela_per_unit };
-        Ok(TruthPicture { image, clouds, variance })
+        Ok(TruthPicture { variance, ..picture })
+    }
+
+    /// The picture as it is shown, once a level or a batch of samples is finished: `Rgba8Unorm`, display-encoded.
+    pub fn display(&self) -> Option<&Texture> {
+        self.before.as_ref().map(|_| &self.targets.display[0])
     }
 
     /// The picture as it is shown, after [`Self::picture`] or a finished level: size, then red, green, blue and 255.

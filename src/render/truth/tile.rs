@@ -20,7 +20,69 @@ const LARGEST: u64 = 64 << 20;
 /// llvmpipe ends an invocation after 65,535 loop iterations, all loops together.
 const ITERATIONS: u32 = 50_000;
 /// Paths of each pixel after which stock is taken first.
-const FIRST_BATCH: u32 = 8;
+const FIRST_BATCH: u32 = 2;
+
+/// Rows that a slice is made up of.
+const BLOCK_ROWS: u32 = 8;
+
+fn blocks_of(height: u32) -> usize {
+    height.div_ceil(BLOCK_ROWS) as usize
+}
+
+/// What fits a slice. A ray does no more work in a dispatch than it is allowed, so what rows took for each unit of it
+/// tells what they take next time at most; rows of which nothing is known go two blocks at a time.
+#[derive(Debug)]
+struct TilePace {
+    /// Milliseconds for each unit of work, of each block of rows.
+    known: Vec<Option<f64>>,
+    /// The greatest of them so far.
+    greatest: f64,
+    /// Units of work for each ray in a dispatch.
+    work: u32,
+}
+
+impl TilePace {
+    fn new(blocks: usize) -> Self {
+        Self { known: vec![None; blocks], greatest: 0.0, work: 32 }
+    }
+
+    /// Rays start anew: blocks that were finished cost something again.
+    fn forget(&mut self) {
+        self.known.fill(None);
+    }
+
+    /// As much work as lets the dearest block fill a slice.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, clamped")]
+    fn choose_work(&mut self, slice_ms: f64, (least, most): (u32, u32)) -> u32 {
+        let fitting = if self.greatest > 0.0 { slice_ms / self.greatest } else { f64::from(self.work) };
+        self.work = (fitting.min(f64::from(most)) as u32).clamp(least, most.max(least));
+        self.work
+    }
+
+    /// Rows from this block on that fit a slice; at least one block.
+    fn rows(&self, first_block: usize, slice_ms: f64) -> u32 {
+        let (mut blocks, mut unknown, mut expected_ms) = (0, 0, 0.0);
+        for known in self.known.iter().skip(first_block) {
+            unknown += u32::from(known.is_none());
+            expected_ms += known.unwrap_or(self.greatest) * f64::from(self.work);
+            if blocks > 0 && (expected_ms > slice_ms || unknown > 2) {
+                break;
+            }
+            blocks += 1;
+        }
+        blocks.max(1) * BLOCK_ROWS
+    }
+
+    fn learn(&mut self, first_block: usize, rows: u32, millis: f64) {
+        let blocks = blocks_of(rows);
+        let each = millis / blocks as f64 / f64::from(self.work.max(1));
+        for known in self.known.iter_mut().skip(first_block).take(blocks) {
+            *known = Some(each);
+        }
+        // A single hiccup of the machine is forgotten in the end.
+        self.greatest = (0.995 * self.greatest).max(each);
+    }
+}
 
 /// What the tiles are made from.
 pub(super) struct Stage<'a> {
@@ -51,7 +113,6 @@ struct Tile {
 pub(super) struct Tiles {
     goal: Goal,
     width: u32,
-    height: u32,
     tiles: Vec<Tile>,
     counters: wgpu::Buffer,
     layers: u32,
@@ -61,9 +122,7 @@ pub(super) struct Tiles {
     /// The tile under way, and its next row.
     tile: usize,
     row: u32,
-    /// What fits a slice, by the last one: rows, and the share of the most steps that a dispatch may take.
-    rows_per_slice: f64,
-    effort: f64,
+    pace: TilePace,
     /// Share of the present tile's rays that have reached their end.
     tile_share: f32,
 }
@@ -110,7 +169,6 @@ impl Tiles {
         let mut this = Self {
             goal,
             width,
-            height,
             tiles,
             counters,
             layers: march.layers,
@@ -119,8 +177,7 @@ impl Tiles {
             samples: 0,
             tile: 0,
             row: 0,
-            rows_per_slice: 8.0,
-            effort: 0.25,
+            pace: TilePace::new(blocks_of(height)),
             tile_share: 0.0,
         };
         this.samples = this.next_samples();
@@ -148,37 +205,46 @@ impl Tiles {
             view_step_m: steps.view_step_m,
             view_growth: steps.view_growth,
             furthest_m: 500_000.0,
+            work_per_dispatch: u32::MAX,
             pad0: 0.0,
             pad1: 0.0,
-            pad2: 0.0,
         }
     }
 
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of a number of steps")]
-    fn write_uniforms(&self, gpu: &Gpu) {
-        for tile in &self.tiles {
-            let mut uniforms = Self::uniforms_at(self.goal, self.layers, (self.level, self.samples), tile.first_row);
-            uniforms.per_dispatch = ((f64::from(uniforms.per_dispatch) * self.effort) as u32).max(1);
-            gpu.queue.write_buffer(&tile.uniforms, 0, bytemuck::bytes_of(&uniforms));
+    /// Tells the tile under way where it is, and how much work a dispatch may do for each ray or path.
+    fn write_uniforms(&mut self, gpu: &Gpu, slice_ms: f64) {
+        let tile = &self.tiles[self.tile];
+        let mut uniforms = Self::uniforms_at(self.goal, self.layers, (self.level, self.samples), tile.first_row);
+        // A ray that has met cloud takes at least one step, with all its steps towards the light.
+        let (least, most) = match self.goal {
+            Goal::Converged { .. } => (1 + uniforms.light_steps, uniforms.per_dispatch * (1 + uniforms.light_steps)),
+            Goal::PathTraced { .. } => (1, uniforms.per_dispatch),
+        };
+        let work = self.pace.choose_work(slice_ms, (least, most));
+        match self.goal {
+            Goal::Converged { .. } => uniforms.work_per_dispatch = work,
+            Goal::PathTraced { .. } => uniforms.per_dispatch = work,
         }
+        gpu.queue.write_buffer(&tile.uniforms, 0, bytemuck::bytes_of(&uniforms));
     }
 
     /// Sends one slice to the device and waits for it. Returns whether that completed the level.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of rows, clamped")]
     pub(super) fn run_slice(&mut self, gpu: &Gpu, slice: Duration) -> Result<bool, RenderError> {
+        let slice_ms = slice.as_secs_f64() * 1e3;
         if self.row == 0 {
-            self.write_uniforms(gpu);
+            self.write_uniforms(gpu, slice_ms);
             gpu.queue.write_buffer(&self.counters, 0, &[0; 16]);
         }
         let tile = &self.tiles[self.tile];
-        let rows = (self.rows_per_slice as u32).next_multiple_of(8).min(tile.rows - self.row);
+        let first_block = ((tile.first_row + self.row) / BLOCK_ROWS) as usize;
+        let rows = self.pace.rows(first_block, slice_ms).min(tile.rows - self.row);
         let pixels = self.width * tile.rows;
         let band = BandUniforms { first_row: tile.first_row + self.row, rows, pad0: 0, pad1: 0 };
         gpu.queue.write_buffer(&tile.band, 0, bytemuck::bytes_of(&band));
         let started = Instant::now();
         job::submit(gpu, &[tile.job.clone().with_grid([self.width.div_ceil(8), rows.div_ceil(8), 1])]);
         gpu.wait()?;
-        self.learn(rows, slice.as_secs_f64() / started.elapsed().as_secs_f64().max(1e-5));
+        self.pace.learn(first_block, rows, started.elapsed().as_secs_f64() * 1e3);
         self.row += rows;
         if self.row < self.tiles[self.tile].rows {
             return Ok(false);
@@ -194,22 +260,6 @@ impl Tiles {
         self.tile += 1;
         self.tile_share = 0.0;
         Ok(self.tile == self.tiles.len())
-    }
-
-    /// Fits rows and steps to a slice that could have held `room` times as much. Steps are cut only where eight rows are
-    /// too many; a dispatch that keeps a ray's state for few steps wastes time.
-    fn learn(&mut self, rows: u32, room: f64) {
-        // Never more than twice as much: the next rows may hold more cloud.
-        let room = room.clamp(0.05, 2.0);
-        let fitting = f64::from(rows) * room;
-        if room > 1.0 && self.effort < 1.0 {
-            self.effort = (self.effort * room).min(1.0);
-        } else if fitting < 8.0 {
-            self.rows_per_slice = 8.0;
-            self.effort *= fitting / 8.0;
-        } else {
-            self.rows_per_slice = fitting.min(f64::from(self.height));
-        }
     }
 
     fn add(&mut self, [_, first, second, third]: [u32; 4]) {
@@ -251,6 +301,7 @@ impl Tiles {
     /// Starts the next level. `false` when there is none.
     pub(super) fn next_level(&mut self, gpu: &Gpu) -> bool {
         self.tile = 0;
+        self.pace.forget();
         match self.goal {
             Goal::Converged { levels, .. } => {
                 if self.level + 1 >= levels {
@@ -286,4 +337,27 @@ fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dear_rows_after_cheap_ones_do_not_make_a_long_slice() {
+        let mut pace = TilePace::new(12);
+        let work = f64::from(pace.choose_work(20.0, (1, 1000)));
+        // Four blocks of cloud, then sky that costs nothing.
+        let cost = |block: usize| if block < 4 { 0.5 } else { 0.001 };
+        for block in 0..12 {
+            assert!(pace.rows(block, 20.0) <= 2 * BLOCK_ROWS, "block {block}: nothing is known yet");
+            pace.learn(block, BLOCK_ROWS, cost(block) * work);
+        }
+        let work = f64::from(pace.choose_work(20.0, (1, 1000)));
+        assert!((work - 40.0).abs() <= 3.0, "a block of cloud fills a slice: {work}");
+        assert_eq!(pace.rows(0, 20.5), BLOCK_ROWS, "one block of cloud");
+        assert_eq!(pace.rows(4, 20.0), 8 * BLOCK_ROWS, "all of the sky");
+        pace.forget();
+        assert_eq!(pace.rows(4, 20.0), BLOCK_ROWS, "another level may cost more");
+    }
 }

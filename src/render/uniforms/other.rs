@@ -127,12 +127,12 @@ gpu_struct! {
         pub view_growth: f32,
         /// Where rays end that meet nothing.
         pub furthest_m: f32,
+        /// Steps of a ray and towards the light together, after which a dispatch leaves it for the next.
+        pub work_per_dispatch: u32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad0: f32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad1: f32,
-        /// Keeps the size a multiple of 16 bytes.
-        pub pad2: f32,
     }
 
     /// From light to display.

@@ -1,0 +1,128 @@
+//! The window's part in refining and comparing: turns of work, pictures for the panels, and what is said of them.
+
+use std::time::{Duration, Instant};
+
+use winit::event::WindowEvent;
+
+use super::super::egui_glue::Place;
+use super::super::truth::{Compared, Outcome, Wishes};
+use super::{App, Live};
+use crate::app::Session;
+use crate::plan::Integrator;
+use crate::render::RenderError;
+use crate::ui::TruthView;
+
+/// Time between two frames of the panels that only say how far the truth is.
+const STATUS: Duration = Duration::from_millis(250);
+
+/// Whether somebody did something, rather than the system.
+pub(super) fn is_input(event: &WindowEvent) -> bool {
+    matches!(
+        event,
+        WindowEvent::KeyboardInput { .. }
+            | WindowEvent::CursorMoved { .. }
+            | WindowEvent::MouseInput { .. }
+            | WindowEvent::MouseWheel { .. }
+            | WindowEvent::Touch(_)
+            | WindowEvent::PinchGesture { .. }
+            | WindowEvent::PanGesture { .. }
+            | WindowEvent::Ime(_)
+    )
+}
+
+fn wishes(session: &Session, moves: bool) -> Wishes {
+    let truth = &session.ui.truth;
+    Wishes {
+        refines: truth.refines,
+        compare: truth.compares().then_some(truth.reference),
+        is_kept: truth.is_kept,
+        moves,
+    }
+}
+
+impl App {
+    /// Lets the truths take a turn if the window's own picture is finished; never for longer than about a slice.
+    pub(super) fn refine(&mut self, is_idle: bool) -> Outcome {
+        let Some(live) = &mut self.live else { return Outcome::default() };
+        if live.viewport.has_moved_on() {
+            self.session.ui.truth.is_kept = false;
+        }
+        if !is_idle {
+            return Outcome::default();
+        }
+        let moves = self.session.document.is_playing() || live.hands.are_busy();
+        let wishes = wishes(&self.session, moves);
+        let mut outcome = live.viewport.refine(wishes);
+        if outcome.as_ref().is_ok_and(|outcome| outcome.has_picture) && wishes.compare.is_some() {
+            outcome = live.viewport.comparison().map(|job| {
+                job.into_iter().for_each(|job| self.worker.compare(job));
+                outcome.unwrap_or_default()
+            });
+        }
+        match outcome {
+            Ok(outcome) => {
+                if outcome.has_picture {
+                    live.draw_within(Duration::ZERO);
+                } else if live.status_of(wishes) != self.session.ui.truth.view.refinement {
+                    live.draw_within(STATUS);
+                }
+                outcome
+            }
+            Err(error) => {
+                self.session.ui.toasts.error(error);
+                live.draw_within(Duration::ZERO);
+                Outcome { wake: Some(Instant::now()), ..Outcome::default() }
+            }
+        }
+    }
+
+    /// Takes in what comparing found, and compares what has become finished meanwhile.
+    pub(super) fn take_comparison(&mut self, compared: Compared) {
+        let Some(live) = &mut self.live else { return };
+        live.viewport.truths.take(live.egui.context(), compared);
+        if !self.session.ui.truth.compares() {
+            return;
+        }
+        match live.viewport.comparison() {
+            Ok(job) => job.into_iter().for_each(|job| self.worker.compare(job)),
+            Err(error) => self.session.ui.toasts.error(error),
+        }
+    }
+}
+
+impl Live {
+    fn status_of(&self, wishes: Wishes) -> crate::ui::Refinement {
+        self.viewport.truths.refinement(wishes)
+    }
+
+    /// Tells the panels what pictures there are and what is known of them.
+    pub(super) fn show_truth(&mut self, session: &mut Session) {
+        let wishes = wishes(session, false);
+        let reference = session.ui.truth.reference;
+        let truths = &self.viewport.truths;
+        let mut set = |place, texture| self.egui.set_picture(&self.gpu, place, texture);
+        let converged = set(Place::Converged, truths.display(Integrator::Converged));
+        let traced = set(Place::Traced, truths.display(Integrator::PathTraced));
+        let still = set(Place::Still, truths.still());
+        let (difference, limit) = truths.difference(reference).unzip();
+        session.ui.truth.view = TruthView {
+            refinement: truths.refinement(wishes),
+            refined: converged,
+            still,
+            truth: if reference == Integrator::PathTraced { traced } else { converged },
+            difference,
+            limit: limit.unwrap_or(1.0),
+            figures: truths.figures(reference),
+            faults: truths.faults(),
+        };
+    }
+
+    /// The picture as the window shows it, for a file: the refined one at rest, else the last frame.
+    pub(super) fn shown_rgba8(&self, session: &Session) -> Result<([u32; 2], Vec<u8>), RenderError> {
+        let refined = self.viewport.truths.display(Integrator::Converged);
+        match refined.filter(|_| !session.ui.truth.compares()) {
+            Some(texture) => self.viewport.renderer().rgba8_of(texture),
+            None => self.viewport.renderer().display_rgba8(),
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! A whole picture beside the frames of a window, every pixel marched afresh. It has targets of its own, so that the
+//! window's frames keep their history, and runs job by job, so that panels stay quick.
+
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+use super::context::Context;
+use super::passes::Passes;
+use super::schedule::{frame_buffers, view_uniforms};
+use super::targets::Targets;
+use super::truth::{self, TruthPicture};
+use super::uniforms::Eye;
+use super::{LinearImage, RenderError, Renderer};
+use crate::gpu::{Job, PassTime, Texture, TimingSource, job, readback};
+use crate::plan::{FramePlan, Integrator, Lighting};
+use crate::scene::Frame;
+
+/// Longest job of a still or of what a truth needs first, in milliseconds.
+pub(super) const JOB_MS: f64 = 20.0;
+
+/// A still under way, or finished.
+#[derive(Debug)]
+pub struct Still {
+    targets: Targets,
+    candela_per_unit: f32,
+    jobs: VecDeque<Job>,
+    times: Vec<PassTime>,
+    source: TimingSource,
+}
+
+impl Renderer {
+    /// Whether [`Self::begin_still`] ([`Integrator::Realtime`]) or [`Self::begin_truth`] finds its shaders ready. Those
+    /// that are not are compiled on other threads.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] if a shader does not compile.
+    pub fn truth_is_ready(&self, frame: &Frame<'_>, integrator: Integrator) -> Result<bool, RenderError> {
+        let plan = FramePlan::for_truth(frame, integrator);
+        let mut is_ready = true;
+        for key in super::programs(&plan).iter().chain(&truth::programs_of(&plan, integrator)) {
+            is_ready &= self.programs.ready_or_start(key)?;
+        }
+        Ok(is_ready)
+    }
+
+    /// Starts a still of the frame. Its output should be one for a file, so that it can be measured.
+    ///
+    /// # Errors
+    /// [`RenderError`] as for [`Self::render`].
+    pub fn begin_still(&mut self, frame: &Frame<'_>) -> Result<Still, RenderError> {
+        self.finish_interactive()?;
+        let plan = FramePlan::for_truth(frame, Integrator::Realtime);
+        // Whoever gives the still up must not leave tables half made.
+        let bakes = self.schedule_bakes(frame, &plan, None)?;
+        job::submit(&self.gpu, &bakes);
+        let lighting = Lighting::new(frame.scene);
+        let eye = Eye::new(&frame.scene.camera);
+        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) };
+        let (targets, _) = Targets::fitting(None, &self.gpu, &plan, frame.render_size())?;
+        let view = view_uniforms(frame, &plan, &eye, None, &lighting);
+        let buffers = frame_buffers(&context, frame, &plan, &view);
+        let shared = self.shared_resources();
+        let mut passes =
+            Passes { context: &context, plan: &plan, targets: &targets, shared, buffers: &buffers, jobs: Vec::new() };
+        passes.cloud_shadow()?;
+        passes.background()?;
+        let cloud = passes.march(None)?;
+        passes.sunshafts(cloud)?;
+        passes.finish(cloud, &targets.display[0])?;
+        let jobs = std::mem::take(&mut passes.jobs).into();
+        let source = TimingSource::of(&self.gpu);
+        Ok(Still { targets, candela_per_unit: lighting.candela_per_unit, jobs, times: Vec::new(), source })
+    }
+}
+
+impl Still {
+    /// Works for about `budget` and waits for each job. Returns whether the picture is finished.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] if the device fails.
+    pub fn advance(&mut self, renderer: &Renderer, budget: Duration) -> Result<bool, RenderError> {
+        let started = Instant::now();
+        while let Some(next) = self.jobs.pop_front() {
+            for time in job::run(&renderer.gpu, std::slice::from_ref(&next))? {
+                job::add(&mut self.times, time.pass, time.millis);
+            }
+            if started.elapsed() >= budget {
+                break;
+            }
+        }
+        Ok(self.jobs.is_empty())
+    }
+
+    /// The picture as it is shown, once it is finished: `Rgba8Unorm`, display-encoded.
+    pub fn display(&self) -> Option<&Texture> {
+        self.jobs.is_empty().then_some(&self.targets.display[0])
+    }
+
+    /// What the passes took together, in milliseconds; `None` where a pass could not be timed, or before the end.
+    pub fn total_ms(&self) -> Option<f64> {
+        let all = self.times.iter().map(|time| time.millis);
+        if self.jobs.is_empty() { all.sum() } else { None }
+    }
+
+    /// Where [`Self::total_ms`] comes from.
+    pub fn source(&self) -> TimingSource {
+        self.source
+    }
+
+    /// Device memory held, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.targets.bytes()
+    }
+
+    /// The finished light, read back; a march has no variance.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] if the device fails.
+    pub fn picture(&self, renderer: &Renderer) -> Result<TruthPicture, RenderError> {
+        read_back(&self.targets, renderer, self.candela_per_unit)
+    }
+}
+
+/// Linear light and clouds of finished targets.
+pub(super) fn read_back(
+    targets: &Targets,
+    renderer: &Renderer,
+    candela_per_unit: f32,
+) -> Result<TruthPicture, RenderError> {
+    let gpu = &renderer.gpu;
+    let rgba = match &targets.linear {
+        Some(linear) => readback::rgba(gpu, linear)?,
+        None => Vec::new(),
+    };
+    let (clouds, distance_m) = match &targets.marched {
+        Some(cloud) => (readback::rgba(gpu, &cloud.light)?, readback::scalars(gpu, &cloud.distance)?),
+        None => (vec![[0.0, 0.0, 0.0, 1.0]; rgba.len()], vec![0.0; rgba.len()]),
+    };
+    let image = LinearImage { size: targets.size(), rgba, distance_m, candela_per_unit };
+    Ok(TruthPicture { image, clouds, variance: Vec::new() })
+}
