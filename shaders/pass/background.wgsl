@@ -23,6 +23,10 @@
 @group(0) @binding(9) var sky_aerial_transmittance: texture_3d<f32>;
 @group(2) @binding(1) var ground_distance_out: texture_storage_2d<r32float, write>;
 #endif
+// Rows that lie above all ground: only its distance is told, which there is none of.
+#if OPEN
+@group(2) @binding(1) var ground_distance_out: texture_storage_2d<r32float, write>;
+#endif
 #if SHADOW
 @group(0) @binding(3) var linear_clamp: sampler;
 @group(0) @binding(10) var cloud_shadow: texture_2d<f32>;
@@ -92,7 +96,12 @@ fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
     if (t >= end) {
       break;
     }
-    let clearance = clearance_at(origin + dir * t, t);
+    let p = origin + dir * t;
+    // Over the plain's gentle rise the ray is often above whatever can stand there: no texture need be asked.
+    var clearance = altitude_at(p, ground.planet_radius_m) - greatest_height(p.xz);
+    if (clearance < 0.001 * t) {
+      clearance = clearance_at(p, t);
+    }
     if (clearance < 0.001 * t) {
       is_hit = true;
       break;
@@ -222,6 +231,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   textureStore(ground_distance_out, pixel, vec4f(hit, 0.0, 0.0, 0.0));
 #else
   let light = sky_with_lights(dir);
+#endif
+#if OPEN
+  textureStore(ground_distance_out, pixel, vec4f(-1.0, 0.0, 0.0, 0.0));
 #endif
 #if FLOAT
   textureStore(background_out, pixel, vec4f(max(light, vec3f(0.0)), 1.0));

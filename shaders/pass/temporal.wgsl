@@ -12,11 +12,9 @@
 @group(1) @binding(1) var fresh_distance: texture_2d<f32>;
 #if HISTORY
 @group(1) @binding(2) var history_cloud: texture_2d<f32>;
-@group(1) @binding(3) var history_distance: texture_2d<f32>;
 @group(1) @binding(4) var linear_clamp: sampler;
 #endif
 @group(2) @binding(0) var cloud_out: texture_storage_2d<rgba16float, write>;
-@group(2) @binding(1) var distance_out: texture_storage_2d<r32float, write>;
 
 // The four fresh rays around a pixel: blended, they stand in wherever there is no history, and history of what moved
 // lies within what they show.
@@ -45,6 +43,23 @@ fn fresh_around(pixel: vec2u) -> Fresh {
 fn is_finite4(v: vec4f) -> bool {
   return is_finite_bits(v.x) && is_finite_bits(v.y) && is_finite_bits(v.z) && is_finite_bits(v.w);
 }
+
+struct Moved {
+  cloud: vec4f,
+  is_found: bool,
+}
+
+// What the picture before shows where the cloud of a pixel was then.
+fn from_history(pixel: vec2u, distance_m: f32) -> Moved {
+  // Clear sky has no distance: far away stands in for it.
+  let reach = select(distance_m, 30000.0, distance_m <= 0.0);
+  let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+  let place = view.camera.eye + dir * reach - view.cloud_motion_m;
+  let before = picture_point(view.previous, normalize(place - view.previous.eye));
+  let inside = before.z > 0.0 && all(before.xy >= vec2f(0.0)) && all(before.xy <= vec2f(1.0));
+  let history = textureSampleLevel(history_cloud, linear_clamp, before.xy, 0.0);
+  return Moved(history, inside && is_finite4(history));
+}
 #endif
 
 @compute @workgroup_size(8, 8)
@@ -54,32 +69,24 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     return;
   }
   let ray = ray_of_pixel(pixel, view);
-  let distance_m = textureLoad(fresh_distance, ray, 0).x;
   var cloud: vec4f;
-  var kept_distance = distance_m;
   if (all(pixel_of_ray(ray, view) == pixel)) {
     cloud = textureLoad(fresh_cloud, ray, 0);
   } else {
 #if HISTORY
     if (view.is_still == 1u) {
       cloud = textureLoad(history_cloud, pixel, 0);
-      kept_distance = textureLoad(history_distance, pixel, 0).x;
       if (!is_finite4(cloud)) {
         cloud = fresh_around(pixel).blend;
       }
     } else {
-      // Clear sky has no distance: far away stands in for it.
-      let reach = select(distance_m, 30000.0, distance_m <= 0.0);
-      let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
-      let place = view.camera.eye + dir * reach - view.cloud_motion_m;
-      let before = picture_point(view.previous, normalize(place - view.previous.eye));
-      let inside = before.z > 0.0 && all(before.xy >= vec2f(0.0)) && all(before.xy <= vec2f(1.0));
       let fresh = fresh_around(pixel);
       cloud = fresh.blend;
-      if (inside) {
-        let history = textureSampleLevel(history_cloud, linear_clamp, before.xy, 0.0);
-        if (is_finite4(history)) {
-          cloud = clamp(history, fresh.low, fresh.high);
+      // Where all around is the same, as in clear sky and before the ground, history could say nothing else.
+      if (any(fresh.low != fresh.high)) {
+        let moved = from_history(pixel, textureLoad(fresh_distance, ray, 0).x);
+        if (moved.is_found) {
+          cloud = clamp(moved.cloud, fresh.low, fresh.high);
         }
       }
     }
@@ -88,5 +95,4 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 #endif
   }
   textureStore(cloud_out, pixel, sanitise4(cloud));
-  textureStore(distance_out, pixel, vec4f(kept_distance, 0.0, 0.0, 0.0));
 }

@@ -3,6 +3,7 @@
 //! `None` and `false` mean: not compiled, not bound, not allocated, not dispatched. Every entry says why in words.
 
 mod history;
+mod horizon;
 mod light;
 mod reasons;
 mod variant;
@@ -35,6 +36,8 @@ pub struct GroundPlan {
     pub terrain: bool,
     /// Edge length of the map of cloud shadows on it.
     pub shadow_px: Option<u32>,
+    /// Rows from the top of the picture in which no ray can meet it.
+    pub open_rows: u32,
 }
 
 /// Everything one frame does, in order.
@@ -121,7 +124,15 @@ fn ground(frame: &Frame<'_>, lighting: &Lighting, why: &mut Reasons) -> Option<G
     let terrain = relief_m > 0.0;
     why.either(terrain, "terrain", format!("relief is {relief_m:.0} m high"), "there are no hills and no mountains");
     let shadow_px = cloud_shadow(frame, lighting, why);
-    Some(GroundPlan { terrain, shadow_px })
+    let open_rows = horizon::open_rows(frame);
+    let rows = frame.render_size()[1];
+    why.either(
+        open_rows < rows,
+        "ground in each row",
+        format!("the upper {open_rows} of {rows} rows lie above it"),
+        "it lies below the picture",
+    );
+    Some(GroundPlan { terrain, shadow_px, open_rows })
 }
 
 fn cloud_shadow(frame: &Frame<'_>, lighting: &Lighting, why: &mut Reasons) -> Option<u32> {

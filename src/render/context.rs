@@ -55,17 +55,24 @@ pub(super) struct Extent {
     pub(super) size: [u32; 3],
     /// Workgroup size of the program.
     pub(super) group: [u32; 3],
+    /// Rows at the beginning that are left out, where it is cut into bands.
+    pub(super) first_row: u32,
 }
 
 impl Extent {
     /// An image in groups of 8×8.
     pub(super) fn image([width, height]: [u32; 2]) -> Self {
-        Self { size: [width, height, 1], group: [8, 8, 1] }
+        Self { size: [width, height, 1], group: [8, 8, 1], first_row: 0 }
     }
 
     /// A cube in groups of 4×4×4.
     pub(super) fn cube(side: u32) -> Self {
-        Self { size: [side; 3], group: [4; 3] }
+        Self { size: [side; 3], group: [4; 3], first_row: 0 }
+    }
+
+    /// The same without its first rows.
+    pub(super) fn below(self, first_row: u32) -> Self {
+        Self { first_row, ..self }
     }
 
     fn grid(self) -> [u32; 3] {
@@ -109,7 +116,7 @@ impl Context<'_> {
         let step = extent.group[axis];
         let rows = self.slice_ms.map_or(all, |slice_ms| self.pace.rows(pass, all, slice_ms)).next_multiple_of(step);
         let mut jobs = Vec::new();
-        let mut first_row = 0;
+        let mut first_row = extent.first_row;
         while first_row < all {
             let count = rows.min(all - first_row);
             let band = BandUniforms { first_row, rows: count, pad0: 0, pad1: 0 };

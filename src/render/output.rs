@@ -77,9 +77,10 @@ impl Renderer {
             return Ok(Vec::new());
         };
         let temporal = targets.history.as_ref().zip(self.history.as_ref());
-        let target = temporal.map(|(sides, history)| &sides[history.side]).or(targets.marched.as_ref());
+        let marched = targets.marched.as_ref().map(|marched| &marched.light);
+        let target = temporal.map(|(sides, history)| &sides[history.side]).or(marched);
         match target {
-            Some(cloud) => Ok(readback::rgba(&self.gpu, &cloud.light)?),
+            Some(cloud) => Ok(readback::rgba(&self.gpu, cloud)?),
             None => Ok(Vec::new()),
         }
     }

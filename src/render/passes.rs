@@ -2,7 +2,7 @@
 
 use super::context::{Bound, Context, Extent};
 use super::targets::{CloudTarget, Targets};
-use crate::gpu::{GpuError, Job, ProgramKey};
+use crate::gpu::{GpuError, Job, ProgramKey, Texture};
 use crate::plan::{FramePlan, MarchVariant};
 use crate::scene::ToneMap;
 
@@ -42,7 +42,7 @@ pub(super) struct Passes<'a> {
     pub(super) jobs: Vec<Job>,
 }
 
-pub(super) fn view_of(texture: &crate::gpu::Texture) -> wgpu::BindingResource<'_> {
+pub(super) fn view_of(texture: &Texture) -> wgpu::BindingResource<'_> {
     wgpu::BindingResource::TextureView(&texture.view)
 }
 
@@ -60,7 +60,10 @@ pub(super) fn march_key(march: MarchVariant) -> ProgramKey {
 
 /// The programs a plan needs for every frame, bakes left out.
 pub(super) fn programs(plan: &FramePlan, with_history: bool) -> Vec<ProgramKey> {
-    let mut keys = vec![background_key(plan), tonemap_key(plan)];
+    let mut keys = vec![background_key(plan, false), tonemap_key(plan)];
+    if plan.ground.is_some_and(|ground| ground.open_rows > 0) {
+        keys.push(background_key(plan, true));
+    }
     if let Some(march) = plan.march {
         keys.push(march_key(march));
         if plan.ground.is_some_and(|ground| ground.shadow_px.is_some()) {
@@ -83,12 +86,14 @@ pub(super) fn programs(plan: &FramePlan, with_history: bool) -> Vec<ProgramKey> 
     keys
 }
 
-fn background_key(plan: &FramePlan) -> ProgramKey {
-    let ground = plan.ground;
+/// The background with whatever the plan says of the ground, or of rows that lie above it.
+fn background_key(plan: &FramePlan, is_open: bool) -> ProgramKey {
+    let ground = plan.ground.filter(|_| !is_open);
     let on = [
         ("GROUND", ground.is_some()),
         ("TERRAIN", ground.is_some_and(|ground| ground.terrain)),
         ("SHADOW", ground.is_some_and(|ground| ground.shadow_px.is_some())),
+        ("OPEN", is_open),
         ("STARS", plan.stars),
         ("FLOAT", plan.float),
     ];
@@ -153,8 +158,13 @@ impl<'a> Passes<'a> {
             own.push(("cloud_shadow", view_of(shadow)));
         }
         let bound = self.bound(&own);
-        let key = background_key(self.plan);
-        self.jobs.extend(self.context.banded("background", &key, &bound, Extent::image(targets.size()))?);
+        let [width, height] = targets.size();
+        let open = self.plan.ground.map_or(0, |ground| ground.open_rows.min(height));
+        for (rows, is_open) in [(0..open, true), (open..height, false)] {
+            let key = background_key(self.plan, is_open);
+            let extent = Extent::image([width, rows.end]).below(rows.start);
+            self.jobs.extend(self.context.banded("background", &key, &bound, extent)?);
+        }
         Ok(())
     }
 
@@ -183,18 +193,16 @@ impl<'a> Passes<'a> {
     pub(super) fn temporal(
         &mut self,
         fresh: &'a CloudTarget,
-        history: Option<&'a CloudTarget>,
-        result: &'a CloudTarget,
+        history: Option<&'a Texture>,
+        result: &'a Texture,
     ) -> Result<(), GpuError> {
         let mut own = vec![
             ("fresh_cloud", view_of(&fresh.light)),
             ("fresh_distance", view_of(&fresh.distance)),
-            ("cloud_out", view_of(&result.light)),
-            ("distance_out", view_of(&result.distance)),
+            ("cloud_out", view_of(result)),
         ];
         if let Some(history) = history {
-            own.push(("history_cloud", view_of(&history.light)));
-            own.push(("history_distance", view_of(&history.distance)));
+            own.push(("history_cloud", view_of(history)));
         }
         let bound = self.bound(&own);
         let key = temporal_key(history.is_some());
@@ -203,11 +211,11 @@ impl<'a> Passes<'a> {
     }
 
     /// Streaks of light: mask, then blur; they are added where the picture is composed.
-    pub(super) fn sunshafts(&mut self, cloud: Option<&'a CloudTarget>) -> Result<(), GpuError> {
+    pub(super) fn sunshafts(&mut self, cloud: Option<&'a Texture>) -> Result<(), GpuError> {
         let (Some([mask, shafts]), Some(cloud)) = (&self.targets.shafts, cloud) else {
             return Ok(());
         };
-        let mut own = vec![("cloud", view_of(&cloud.light)), ("mask_out", view_of(mask))];
+        let mut own = vec![("cloud", view_of(cloud)), ("mask_out", view_of(mask))];
         if let Some(distance) = &self.targets.ground_distance {
             own.push(("ground_distance", view_of(distance)));
         }
@@ -221,15 +229,11 @@ impl<'a> Passes<'a> {
     }
 
     /// Linear light for a file, and the picture for the screen.
-    pub(super) fn finish(
-        &mut self,
-        cloud: Option<&'a CloudTarget>,
-        display: &'a crate::gpu::Texture,
-    ) -> Result<(), GpuError> {
+    pub(super) fn finish(&mut self, cloud: Option<&'a Texture>, display: &'a Texture) -> Result<(), GpuError> {
         let targets = self.targets;
         let mut own = vec![("background", view_of(&targets.background)), ("display_out", view_of(display))];
         if let Some(cloud) = cloud {
-            own.push(("cloud", view_of(&cloud.light)));
+            own.push(("cloud", view_of(cloud)));
         }
         if let Some([_, shafts]) = &targets.shafts {
             own.push(("shafts_light", view_of(shafts)));

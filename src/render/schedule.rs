@@ -50,9 +50,10 @@ impl Renderer {
             Passes { context: &context, plan: &plan, targets: &targets, shared, buffers: &buffers, jobs: Vec::new() };
         passes.cloud_shadow()?;
         passes.background()?;
-        let mut cloud = passes.march(counters)?;
+        let marched = passes.march(counters)?;
+        let mut cloud = marched.map(|marched| &marched.light);
         let mut side = 0;
-        if let (Some(fresh), Some(history)) = (cloud, &targets.history) {
+        if let (Some(fresh), Some(history)) = (marched, &targets.history) {
             side = usable.as_ref().map_or(0, |usable| 1 - usable.side);
             passes.temporal(fresh, usable.as_ref().map(|usable| &history[usable.side]), &history[side])?;
             cloud = Some(&history[side]);

@@ -65,6 +65,7 @@ impl Renderer {
         passes.cloud_shadow()?;
         passes.background()?;
         let cloud = passes.march(None)?;
+        let cloud = cloud.map(|marched| &marched.light);
         passes.sunshafts(cloud)?;
         passes.finish(cloud, &targets.display[0])?;
         let jobs = std::mem::take(&mut passes.jobs).into();

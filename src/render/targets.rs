@@ -34,8 +34,8 @@ pub(super) struct Targets {
     pub(super) cloud_shadow: Option<Texture>,
     /// What the march writes: rays of a partial update, or all pixels.
     pub(super) marched: Option<CloudTarget>,
-    /// Full pictures that take turns as history and as result.
-    pub(super) history: Option<[CloudTarget; 2]>,
+    /// Full pictures that take turns as history and as result: light and transmittance.
+    pub(super) history: Option<[Texture; 2]>,
     pub(super) shafts: Option<[Texture; 2]>,
     pub(super) linear: Option<Texture>,
     /// Finished pictures: one is shown while the other is made.
@@ -89,7 +89,11 @@ impl Targets {
             ground_distance: shape.ground.then(|| image("ground_distance", size, distance)).transpose()?,
             cloud_shadow: shape.shadow_px.map(|side| image("cloud_shadow", [side; 2], SHADOW_FORMAT)).transpose()?,
             marched: shape.clouds.then(|| cloud("marched", rays)).transpose()?,
-            history: if shape.temporal { Some([cloud("history", size)?, cloud("history", size)?]) } else { None },
+            history: if shape.temporal {
+                Some([image("history", size, format)?, image("history", size, format)?])
+            } else {
+                None
+            },
             shafts: if shape.shafts { Some([shaft("shafts_mask")?, shaft("shafts")?]) } else { None },
             linear: float.then(|| image("linear", size, wgpu::TextureFormat::Rgba32Float)).transpose()?,
             display: [display("display")?, display("display")?],
@@ -103,8 +107,8 @@ impl Targets {
 
     /// Device memory in bytes.
     pub(super) fn bytes(&self) -> u64 {
-        let clouds = self.marched.iter().chain(self.history.iter().flatten());
-        let clouds: u64 = clouds.map(|cloud| cloud.light.bytes() + cloud.distance.bytes()).sum();
+        let marched: u64 = self.marched.iter().map(|cloud| cloud.light.bytes() + cloud.distance.bytes()).sum();
+        let clouds = marched + self.history.iter().flatten().map(Texture::bytes).sum::<u64>();
         let single = [self.ground_distance.as_ref(), self.cloud_shadow.as_ref(), self.linear.as_ref()];
         let single: u64 = single.into_iter().flatten().map(Texture::bytes).sum();
         let shafts: u64 = self.shafts.iter().flatten().map(Texture::bytes).sum();

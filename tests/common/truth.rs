@@ -141,6 +141,7 @@ impl March {
             scattering_limit,
             seed: 11,
             furthest_m: 500_000.0,
+            work_per_dispatch: u32::MAX,
             ..TruthUniforms::zeroed()
         };
         let key = self.key("pass/path_trace.wgsl");

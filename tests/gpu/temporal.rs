@@ -177,9 +177,8 @@ impl Reprojection {
         }
         let (fresh, history) = (image(rays, &fresh), image(SIZE, &self.picture));
         let texels = (SIZE[0] * SIZE[1]) as usize;
-        let (near, kept) = (scalars(rays, &vec![2000.0; texels / 16]), scalars(SIZE, &vec![2000.0; texels]));
+        let near = scalars(rays, &vec![2000.0; texels / 16]);
         let out = Texture::new_2d(gpu(), "out", SIZE, wgpu::TextureFormat::Rgba16Float).expect("it fits");
-        let distance = scalars(SIZE, &vec![0.0; texels]);
         let clamp = gpu().device.create_sampler(&wgpu::SamplerDescriptor {
             mag_filter: wgpu::FilterMode::Linear,
             min_filter: wgpu::FilterMode::Linear,
@@ -190,10 +189,8 @@ impl Reprojection {
             ("fresh_cloud", view_of(&fresh)),
             ("fresh_distance", view_of(&near)),
             ("history_cloud", view_of(&history)),
-            ("history_distance", view_of(&kept)),
             ("linear_clamp", wgpu::BindingResource::Sampler(&clamp)),
             ("cloud_out", view_of(&out)),
-            ("distance_out", view_of(&distance)),
         ];
         run(&ProgramKey::plain("pass/temporal.wgsl").with_flags(["HISTORY"]), &bound, [SIZE[0], SIZE[1], 1]);
         self.picture = readback::rgba(gpu(), &out).expect("it can be read");

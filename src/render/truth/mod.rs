@@ -119,8 +119,9 @@ impl Renderer {
         passes.cloud_shadow()?;
         passes.background()?;
         let prepare = std::mem::take(&mut passes.jobs).into();
-        passes.sunshafts(targets.marched.as_ref())?;
-        passes.finish(targets.marched.as_ref(), &targets.display[0])?;
+        let cloud = targets.marched.as_ref().map(|marched| &marched.light);
+        passes.sunshafts(cloud)?;
+        passes.finish(cloud, &targets.display[0])?;
         let after = std::mem::take(&mut passes.jobs);
         let mut truth = Truth {
             integrator,
