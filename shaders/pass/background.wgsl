@@ -96,12 +96,7 @@ fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
     if (t >= end) {
       break;
     }
-    let p = origin + dir * t;
-    // Over the plain's gentle rise the ray is often above whatever can stand there: no texture need be asked.
-    var clearance = altitude_at(p, ground.planet_radius_m) - greatest_height(p.xz);
-    if (clearance < 0.001 * t) {
-      clearance = clearance_at(p, t);
-    }
+    let clearance = clearance_at(origin + dir * t, t);
     if (clearance < 0.001 * t) {
       is_hit = true;
       break;

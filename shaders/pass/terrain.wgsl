@@ -14,14 +14,6 @@ const HILLS_FROM_M: f32 = 24000.0;
 // Distance to which the small copy of the relief is read.
 const FINE_RELIEF_M: f32 = 2500.0;
 
-// No ground at a place is higher: the ranges and hills with all their noise, as far as they have risen there. The small
-// copy of the relief adds a tenth of the ranges and a sixteenth of the hills at most.
-fn greatest_height(p: vec2f) -> f32 {
-  let out = length(p - ground.plain_at);
-  return 1.1 * ground.mountains_m * smoothstep(PLAIN_M, RANGES_FROM_M, out)
-    + 1.06 * ground.hills_m * smoothstep(PLAIN_M, HILLS_FROM_M, out);
-}
-
 // Height above sea level, seen from a distance: ranges, hills between them, and near the eye the same again, small, so
 // that near slopes are not smooth.
 fn terrain_height(p: vec2f, distance_m: f32, smp: sampler) -> f32 {
