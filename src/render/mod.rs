@@ -169,10 +169,17 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`] if the device fails or an image of the weather map cannot be used.
     pub fn render(&mut self, frame: &Frame<'_>) -> Result<FrameReport, RenderError> {
+        self.render_as_planned(frame, FramePlan::new(frame))
+    }
+
+    /// Renders the frame by a plan of one's own, to see what another one changes.
+    ///
+    /// # Errors
+    /// As for [`Self::render`].
+    pub fn render_as_planned(&mut self, frame: &Frame<'_>, plan: FramePlan) -> Result<FrameReport, RenderError> {
         self.finish_interactive()?;
         // Long jobs are cut so that no driver's watchdog ends them; software drivers have none.
         let slice_ms = if self.gpu.is_software() { None } else { Some(200.0) };
-        let plan = FramePlan::new(frame);
         let (jobs, _) = self.schedule(frame, plan, slice_ms, None)?;
         let started = Instant::now();
         let times = job::run(&self.gpu, &jobs)?;

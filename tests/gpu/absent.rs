@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use nephoscope::plan::FramePlan;
+use nephoscope::plan::{FramePlan, GroundPlan};
 use nephoscope::render::{programs, shaders::TABLE};
-use nephoscope::scene::{DensityModel, Frame, Output, Quality, Scene, UpdateFraction};
+use nephoscope::scene::{DensityModel, Frame, Output, Projection, Quality, Scene, UpdateFraction};
 
+use crate::common::Random;
 use crate::common::sky::{frame, linear, quick, render, renderer};
 
 type Change = fn(&mut Setup);
@@ -195,4 +196,37 @@ fn leaving_out_what_has_no_strength_changes_nothing() {
         assert!(runs(&with) > runs(&without), "{name}: both pictures were planned alike");
         assert!(absent == present, "{name}: compiling it in changes the picture");
     }
+}
+
+#[test]
+fn rows_above_the_ground_are_the_same_without_it() {
+    let mut random = Random::new(31);
+    let mut left_out = 0;
+    for projection in [Projection::Perspective, Projection::Perspective, Projection::Equirect, Projection::Dome] {
+        for relief_m in [[0.0, 0.0], [300.0, 0.0], [60.0, 2500.0]] {
+            let (mut scene, quality) = (Scene::default(), quick());
+            scene.weather.coverage = 0.0;
+            [scene.ground.hills_m, scene.ground.mountains_m] = relief_m;
+            let camera = &mut scene.camera;
+            camera.projection = projection;
+            (camera.heading_deg, camera.pitch_deg) = (random.between(0.0, 360.0), random.between(-30.0, 60.0));
+            (camera.field_of_view_deg, camera.height_m) =
+                (random.between(20.0, 110.0), random.pick(&[2.0, 40.0, 4000.0]));
+            (camera.east_m, camera.south_m) = (random.pick(&[0.0, 3000.0]), random.pick(&[0.0, -9000.0]));
+            let frame = frame(&scene, &quality, [96, 54], Output::Linear);
+            let planned = FramePlan::new(&frame);
+            let Some(ground) = planned.ground else { continue };
+            left_out += ground.open_rows;
+            let everywhere = FramePlan { ground: Some(GroundPlan { open_rows: 0, ..ground }), ..planned.clone() };
+            let mut renderer = renderer();
+            let mut take = |plan| {
+                renderer.render_as_planned(&frame, plan).unwrap_or_else(|error| panic!("{error}"));
+                let rgba = renderer.linear().unwrap_or_else(|error| panic!("{error}")).rgba;
+                rgba.iter().map(|texel| texel.map(f32::to_bits)).collect::<Vec<_>>()
+            };
+            let (with, without) = (take(everywhere), take(planned));
+            assert!(with == without, "{:?}, relief {relief_m:?}: {} rows", scene.camera, ground.open_rows);
+        }
+    }
+    assert!(left_out > 150, "ground was left out of {left_out} rows only");
 }

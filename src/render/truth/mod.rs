@@ -343,9 +343,11 @@ impl Truth {
         Ok(TruthPicture { variance, ..picture })
     }
 
-    /// The picture as it is shown, once a level or a batch of samples is finished: `Rgba8Unorm`, display-encoded.
+    /// The picture as it is shown, once a level or a batch of samples is finished that is worth it: `Rgba8Unorm`,
+    /// display-encoded. The first two levels of a march show their steps as rings.
     pub fn display(&self) -> Option<&Texture> {
-        self.before.as_ref().map(|_| &self.targets.display[0])
+        let is_coarse = self.integrator == Integrator::Converged && self.progress.finished < 2;
+        self.before.as_ref().filter(|_| self.progress.is_done || !is_coarse).map(|_| &self.targets.display[0])
     }
 
     /// The picture as it is shown, after [`Self::picture`] or a finished level: size, then red, green, blue and 255.
