@@ -58,11 +58,11 @@ params! {
         /// Greatest distance at which clouds are drawn.
         max_distance_m: f32 = 150_000.0, 1000.0..=500_000.0, Metres, logarithmic;
         /// Steps from a sample towards the light.
-        light_steps: u32 = 6, 1..=128, None;
+        light_steps: u32 = 8, 1..=128, None;
         /// Longest way covered towards the light; shorter where it leaves the clouds before.
         light_reach_m: f32 = 100_000.0, 50.0..=500_000.0, Metres, logarithmic;
         /// Length of each light step relative to the one before, over a way of a kilometre; more over longer ways.
-        light_growth: f32 = 1.5, 1.0..=4.0, None;
+        light_growth: f32 = 1.4, 1.0..=4.0, None;
         /// How many of the light steps read the small noise.
         light_detail_steps: u32 = 0, 0..=128, None;
         /// Octaves of multiple scattering on top of the first. 0 is true single scattering.
