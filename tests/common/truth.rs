@@ -124,8 +124,14 @@ impl March {
 
     /// The converged march: light and transmittance of each ray, and what was counted over all.
     pub(crate) fn converged(&self, view_step_m: f32, light_steps: u32, per_dispatch: u32) -> (Vec<[f32; 4]>, Counters) {
-        let truth =
-            TruthUniforms { per_dispatch, light_steps, view_step_m, furthest_m: 500_000.0, ..TruthUniforms::zeroed() };
+        let truth = TruthUniforms {
+            per_dispatch,
+            light_steps,
+            view_step_m,
+            furthest_m: 500_000.0,
+            work_per_dispatch: u32::MAX,
+            ..TruthUniforms::zeroed()
+        };
         let key = self.key("pass/converged.wgsl").with_constant("OCTAVES", 0);
         let ([state, _], counted) =
             self.with_inputs(&truth, &blind_bounds(), |bound| self.until_done(&key, bound, ["marched_rays", "unused"]));
