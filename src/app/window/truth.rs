@@ -53,7 +53,7 @@ impl App {
         let moves = self.session.document.is_playing() || live.hands.are_busy();
         let wishes = wishes(&self.session, moves);
         let mut outcome = live.viewport.refine(wishes);
-        if outcome.as_ref().is_ok_and(|outcome| outcome.has_picture) && wishes.compare.is_some() {
+        if outcome.is_ok() && wishes.compare.is_some() {
             outcome = live.viewport.comparison().map(|job| {
                 job.into_iter().for_each(|job| self.worker.compare(job));
                 outcome.unwrap_or_default()
