@@ -189,3 +189,13 @@ impl March {
         }
     }
 }
+
+/// Closed form S9 of a slab cut into equal cells that are read in their middle, for isotropic light of irradiance 4π.
+pub(crate) fn slab_light(tau: f64, cells: u32, (mu, mu0): (f64, f64), up: bool) -> f64 {
+    let count = f64::from(cells);
+    let (x, y) = (tau / (mu * count), tau / (mu0 * count));
+    // Looking up, the light's way through the slab shortens along the ray.
+    let (rate, first) = if up { (x - y, tau / mu0 - y / 2.0) } else { (x + y, y / 2.0) };
+    let sum = if rate.abs() < 1e-12 { count } else { (-count * rate).exp_m1() / (-rate).exp_m1() };
+    -(-x).exp_m1() * (-first).exp() * sum
+}

@@ -4,7 +4,7 @@
 use glam::{DVec3, Vec3};
 use nephoscope::reference::shell;
 
-use crate::common::slab::{BOX, FLAT, March, PROFILE, RADIUS_M, Seen, THESIS, noisy_layer, uniform_layer};
+use crate::common::slab::{BOX, FLAT, March, PROFILE, RADIUS_M, Seen, THESIS, noisy_layer, slab_light, uniform_layer};
 
 const THICKNESS_M: f32 = 1000.0;
 const SHELL: u32 = 0;
@@ -64,16 +64,6 @@ fn shell_and_box_absorb_along_their_true_length() {
         let error = worst(march.run().rgba.iter().map(|texel| f64::from(texel[3]) - expected));
         assert!(error < 5e-5, "domain {domain}, {dir}, {length} m: off by {error:e} of {expected}");
     }
-}
-
-/// Closed form S9 of a slab cut into equal cells that are read in their middle, for isotropic light of irradiance 4π.
-fn slab_light(tau: f64, cells: u32, (mu, mu0): (f64, f64), up: bool) -> f64 {
-    let count = f64::from(cells);
-    let (x, y) = (tau / (mu * count), tau / (mu0 * count));
-    // Looking up, the light's way through the slab shortens along the ray.
-    let (rate, first) = if up { (x - y, tau / mu0 - y / 2.0) } else { (x + y, y / 2.0) };
-    let sum = if rate.abs() < 1e-12 { count } else { (-count * rate).exp_m1() / (-rate).exp_m1() };
-    -(-x).exp_m1() * (-first).exp() * sum
 }
 
 #[test]

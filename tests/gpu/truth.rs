@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 use nephoscope::gpu::ProgramKey;
 
 use crate::common::field::{Field, linear_repeat, run, view_of};
-use crate::common::slab::{FLAT, March, PROFILE, THESIS, UNIFORM, noisy_layer};
+use crate::common::slab::{FLAT, March, PROFILE, THESIS, UNIFORM, noisy_layer, slab_light};
 use crate::common::truth::{Mean, baked_bounds, blind_bounds, named};
 use crate::common::{Case, Random, bits3, gpu};
 use wgpu::util::DeviceExt as _;
@@ -37,15 +37,6 @@ fn lit_slab(tau: f32, albedo: f32, g: Option<f32>, mu0: f32, view: Vec3) -> Marc
 fn check(name: &str, value: f64, error: f64, expected: f64) {
     let sigmas = (value - expected).abs() / error.max(1e-12);
     assert!(sigmas < SIGMAS, "{name}: {value} ± {error}, not {expected} ({sigmas:.1} standard errors)");
-}
-
-/// The closed form S9 of a slab in equal cells read in their middle, per unit of phase function and irradiance.
-fn slab_light(tau: f64, cells: u32, (mu, mu0): (f64, f64), up: bool) -> f64 {
-    let count = f64::from(cells);
-    let (x, y) = (tau / (mu * count), tau / (mu0 * count));
-    let (rate, first) = if up { (x - y, tau / mu0 - y / 2.0) } else { (x + y, y / 2.0) };
-    let sum = if rate.abs() < 1e-12 { count } else { (-count * rate).exp_m1() / (-rate).exp_m1() };
-    -(-x).exp_m1() * (-first).exp() * sum
 }
 
 #[test]
