@@ -3,6 +3,7 @@
 // Red, green and blue hold how deep inside a cumulus, stratus or stratocumulus field a place lies, 0..1; coverage is a
 // threshold on their sum, applied here, so that it can change from place to place and under a slider without a bake.
 // Alpha is a slow variation that makes some fields tower and others stay low.
+
 struct Weather {
   // How far inside a cloud, 0 outside to 1 in the middle.
   body: f32,

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use super::context::Context;
-use super::passes::Passes;
+use super::passes::{FrameBuffers, Passes};
 use super::schedule::{frame_buffers, view_uniforms};
 use super::targets::Targets;
 use super::truth::{self, TruthPicture};
@@ -28,6 +28,13 @@ pub struct Still {
     source: TimingSource,
 }
 
+/// What a picture beside the window's frames has to itself.
+pub(super) struct Apart {
+    pub(super) targets: Targets,
+    pub(super) buffers: FrameBuffers,
+    pub(super) candela_per_unit: f32,
+}
+
 impl Renderer {
     /// Whether [`Self::begin_still`] ([`Integrator::Realtime`]) or [`Self::begin_truth`] finds its shaders ready. Those
     /// that are not are compiled on other threads.
@@ -48,17 +55,9 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
     pub fn begin_still(&mut self, frame: &Frame<'_>) -> Result<Still, RenderError> {
-        self.finish_interactive()?;
         let plan = FramePlan::for_truth(frame, Integrator::Realtime);
-        // Whoever gives the still up must not leave tables half made.
-        let bakes = self.schedule_bakes(frame, &plan, None)?;
-        job::submit(&self.gpu, &bakes);
-        let lighting = Lighting::new(frame.scene);
-        let eye = Eye::new(&frame.scene.camera);
-        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) };
-        let (targets, _) = Targets::fitting(None, &self.gpu, &plan, frame.render_size())?;
-        let view = view_uniforms(frame, &plan, &eye, None, &lighting);
-        let buffers = frame_buffers(&context, frame, &plan, &view);
+        let Apart { targets, buffers, candela_per_unit } = self.begin_apart(frame, &plan)?;
+        let context = self.context_apart();
         let shared = self.shared_resources();
         let mut passes =
             Passes { context: &context, plan: &plan, targets: &targets, shared, buffers: &buffers, jobs: Vec::new() };
@@ -70,7 +69,26 @@ impl Renderer {
         passes.finish(cloud, &targets.display[0])?;
         let jobs = std::mem::take(&mut passes.jobs).into();
         let source = TimingSource::of(&self.gpu);
-        Ok(Still { targets, candela_per_unit: lighting.candela_per_unit, jobs, times: Vec::new(), source })
+        Ok(Still { targets, candela_per_unit, jobs, times: Vec::new(), source })
+    }
+
+    /// Makes what a picture beside the window's frames reads, and the targets and buffers of its own.
+    pub(super) fn begin_apart(&mut self, frame: &Frame<'_>, plan: &FramePlan) -> Result<Apart, RenderError> {
+        self.finish_interactive()?;
+        // Whoever gives the picture up must not leave tables half made.
+        let bakes = self.schedule_bakes(frame, plan, None)?;
+        job::submit(&self.gpu, &bakes);
+        let lighting = Lighting::new(frame.scene);
+        let eye = Eye::new(&frame.scene.camera);
+        let (targets, _) = Targets::fitting(None, &self.gpu, plan, frame.render_size())?;
+        let view = view_uniforms(frame, plan, &eye, None, &lighting);
+        let buffers = frame_buffers(&self.context_apart(), frame, plan, &view);
+        Ok(Apart { targets, buffers, candela_per_unit: lighting.candela_per_unit })
+    }
+
+    /// What its passes are given: jobs short enough for the panels beside it.
+    pub(super) fn context_apart(&self) -> Context<'_> {
+        Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) }
     }
 }
 

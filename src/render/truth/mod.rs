@@ -14,13 +14,11 @@ mod tile;
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use super::context::Context;
 use super::pass::sky::SkyInputs;
 use super::passes::{FrameBuffers, Passes, field_key, view_of};
-use super::schedule::{frame_buffers, view_uniforms};
-use super::still::{JOB_MS, read_back};
+use super::still::{Apart, read_back};
 use super::targets::Targets;
-use super::uniforms::{self, Eye};
+use super::uniforms;
 use super::{LinearImage, RenderError, Renderer};
 use crate::gpu::{Job, ProgramKey, Texture, job, readback};
 use crate::plan::{FramePlan, Integrator, Lighting, MarchVariant};
@@ -100,19 +98,10 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
     pub fn begin_truth(&mut self, frame: &Frame<'_>, goal: Goal) -> Result<Truth, RenderError> {
-        self.finish_interactive()?;
         let integrator = goal.integrator();
         let plan = FramePlan::for_truth(frame, integrator);
-        // Whoever gives the truth up must not leave tables half made.
-        let bakes = self.schedule_bakes(frame, &plan, None)?;
-        job::submit(&self.gpu, &bakes);
-        let lighting = Lighting::new(frame.scene);
-        let eye = Eye::new(&frame.scene.camera);
-        let size = frame.render_size();
-        let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms: Some(JOB_MS) };
-        let (targets, _) = Targets::fitting(None, &self.gpu, &plan, size)?;
-        let view = view_uniforms(frame, &plan, &eye, None, &lighting);
-        let buffers = frame_buffers(&context, frame, &plan, &view);
+        let Apart { targets, buffers, candela_per_unit } = self.begin_apart(frame, &plan)?;
+        let context = self.context_apart();
         let shared = self.shared_resources();
         let mut passes =
             Passes { context: &context, plan: &plan, targets: &targets, shared, buffers: &buffers, jobs: Vec::new() };
@@ -126,7 +115,7 @@ impl Renderer {
         let mut truth = Truth {
             integrator,
             goal,
-            candela_per_unit: lighting.candela_per_unit,
+            candela_per_unit,
             tiles: None,
             prepare,
             finish: Vec::new(),
@@ -144,7 +133,7 @@ impl Renderer {
             targets,
         };
         if let Some(march) = truth.plan.march {
-            let inputs = uniforms::sky_inputs(frame.scene, &lighting);
+            let inputs = uniforms::sky_inputs(frame.scene, &Lighting::new(frame.scene));
             self.add_clouds(&mut truth, march, &buffers, &inputs)?;
         }
         truth.finish.extend(after);
@@ -217,11 +206,9 @@ fn resolve_program(integrator: Integrator, march: MarchVariant) -> ProgramKey {
         .with_flags((integrator == Integrator::PathTraced).then_some("PATHS"))
 }
 
-/// Every program that a truth of this plan asks for beyond those of the plan itself.
+/// Every program that the truths of this plan ask for beyond those of the plan itself.
 pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
-    let Some(march) = plan.march else { return Vec::new() };
-    let integrators = [Integrator::Converged, Integrator::PathTraced];
-    integrators.into_iter().flat_map(|which| [program(which, march), resolve_program(which, march)]).collect()
+    [Integrator::Converged, Integrator::PathTraced].into_iter().flat_map(|which| programs_of(plan, which)).collect()
 }
 
 /// The same for one integrator; none for the march itself.
