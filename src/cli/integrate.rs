@@ -97,9 +97,11 @@ pub(super) fn converge(renderer: &mut Renderer, frame: &Frame<'_>, goal: Goal) -
 
 /// How far it is, in words.
 pub(super) fn describe(goal: Goal, progress: &Convergence) -> String {
-    let finished = match goal {
-        Goal::Converged { .. } => format!("level {}", progress.finished),
-        Goal::PathTraced { .. } => format!("{} samples", progress.finished),
+    let finished = match (goal, progress.finished) {
+        (Goal::Converged { .. }, Some(level)) => format!("level {level}"),
+        (Goal::PathTraced { .. }, Some(samples)) => format!("{samples} samples"),
+        (_, None) if progress.is_done => "no cloud in view".to_owned(),
+        (_, None) => "nothing finished yet".to_owned(),
     };
     let error = progress.error.map_or_else(String::new, |error| format!(", within {:.2} %", error * 100.0));
     let faults = progress.counts.exceeded + progress.counts.cut;

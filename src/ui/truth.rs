@@ -30,7 +30,7 @@ choices! {
 pub struct Refined {
     /// Which truth.
     pub integrator: Integrator,
-    /// Level of the ladder or samples of each pixel of the last finished picture; `None` before the first.
+    /// Level of the ladder or samples of each pixel that are finished, shown or not; `None` before the first.
     pub finished: Option<u32>,
     /// Share of the level or of all samples under way, 0 to 1.
     pub share: f32,

@@ -169,7 +169,7 @@ impl Truths {
                 if let Some(kept) = self.moment.kept_mut(integrator) {
                     // Half a slice: what is begun before it is over runs for a whole one.
                     let progress = kept.truth.advance(renderer, SLICE / 2, SLICE)?;
-                    let finished = kept.truth.display().map(|_| progress.finished);
+                    let finished = kept.truth.display().and(progress.finished);
                     has_picture = finished != kept.finished;
                     kept.finished = finished;
                     if progress.is_done {
@@ -334,10 +334,10 @@ fn goal(integrator: Integrator) -> Goal {
 }
 
 fn refined(kept: &Kept) -> Refined {
-    let Convergence { share, error, spent_secs, .. } = kept.truth.progress();
+    let Convergence { finished, share, error, spent_secs, .. } = kept.truth.progress();
     // A broken pixel must not make a status that differs from itself.
     let error = error.filter(|error| error.is_finite());
-    Refined { integrator: kept.truth.integrator(), finished: kept.finished, share, error, spent_secs }
+    Refined { integrator: kept.truth.integrator(), finished, share, error, spent_secs }
 }
 
 /// What a count that should be 0 means.
@@ -364,7 +364,7 @@ mod tests {
         let progress = |exceeded, cut| Convergence {
             is_done: false,
             share: 0.0,
-            finished: 0,
+            finished: None,
             error: None,
             counts: TruthCounts { steps: 5, light_steps: 5, exceeded, cut },
             spent_secs: 0.0,

@@ -51,8 +51,8 @@ pub struct Convergence {
     pub is_done: bool,
     /// Share of the work of the present level or of all samples, 0 to 1.
     pub share: f32,
-    /// Level of the ladder, or samples of each pixel, that are finished.
-    pub finished: u32,
+    /// Level of the ladder, or samples of each pixel, that are finished; `None` before the first.
+    pub finished: Option<u32>,
     /// Estimated relative error of the finished picture, root mean square over pixels with cloud; `None` before the
     /// first estimate.
     pub error: Option<f32>,
@@ -123,7 +123,7 @@ impl Renderer {
             progress: Convergence {
                 is_done: plan.march.is_none(),
                 share: 0.0,
-                finished: 0,
+                finished: None,
                 error: None,
                 counts: TruthCounts::default(),
                 spent_secs: 0.0,
@@ -275,7 +275,7 @@ impl Truth {
     /// Takes stock after a level or a batch of samples, and starts the next.
     fn complete_level(&mut self, renderer: &Renderer) -> Result<(), RenderError> {
         let Some(tiles) = &mut self.tiles else { return Ok(()) };
-        self.progress.finished = tiles.finished();
+        self.progress.finished = Some(tiles.finished());
         job::submit(&renderer.gpu, &self.finish);
         let Some(cloud) = &self.targets.marched else { return Ok(()) };
         let clouds = readback::rgba(&renderer.gpu, &cloud.light)?;
@@ -295,7 +295,7 @@ impl Truth {
                     let variance = readback::rgba(&renderer.gpu, variance)?;
                     self.progress.error = Some(settings::standard_error(&composed, &variance));
                 }
-                let is_good = self.progress.finished >= LEAST_SAMPLES
+                let is_good = self.progress.finished >= Some(LEAST_SAMPLES)
                     && self.progress.error.is_some_and(|error| error <= tolerance);
                 self.progress.is_done = is_good || !tiles.next_level(&renderer.gpu);
             }
@@ -333,7 +333,7 @@ impl Truth {
     /// The picture as it is shown, once a level or a batch of samples is finished that is worth it: `Rgba8Unorm`,
     /// display-encoded. The first two levels of a march show their steps as rings.
     pub fn display(&self) -> Option<&Texture> {
-        let is_coarse = self.integrator == Integrator::Converged && self.progress.finished < 2;
+        let is_coarse = self.integrator == Integrator::Converged && self.progress.finished < Some(2);
         self.before.as_ref().filter(|_| self.progress.is_done || !is_coarse).map(|_| &self.targets.display[0])
     }
 
