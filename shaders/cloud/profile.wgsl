@@ -33,13 +33,22 @@ fn height_profile(weather: Weather, layer: LayerUniforms, h: f32) -> f32 {
 // Mean of each of the large noise's sums of billows.
 const MEAN_BILLOW: f32 = 0.48;
 
+// What is taken from every profile, so that clear air is clear.
+const THINNEST_PROFILE: f32 = 0.23;
+
 // How much of the large noise counts: it falls where the profile is thin, which keeps pebbles from floating beside the
 // bodies.
 fn noise_amplitude(profile: f32) -> f32 {
   return smoothstep(0.04, 0.58, profile);
 }
 
-// Signed field after the large noise: positive inside. Noise is added, not multiplied. Knobs sit on domes and not in the
+// The profile and the large noise together: positive inside. `lumps` is 0..1.
+fn signed_field(profile: f32, lumps: f32, weather: Weather, layer: LayerUniforms) -> f32 {
+  let strength = layer.shape_strength * dot(weather.types, vec3f(1.0, 0.7, 0.9));
+  return (1.2 * profile - THINNEST_PROFILE + strength * (lumps * noise_amplitude(profile) - 0.65)) * 2.2;
+}
+
+// Signed field after the large noise. Noise is added, not multiplied. Knobs sit on domes and not in the
 // hollows between them: a cloud of one roughness looks like foam, and knobs beside a dome would float.
 fn billowed(profile: f32, noise: vec4f, weather: Weather, layer: LayerUniforms) -> f32 {
   let domes = noise.g - MEAN_BILLOW;
@@ -48,36 +57,49 @@ fn billowed(profile: f32, noise: vec4f, weather: Weather, layer: LayerUniforms) 
   let rough = smoothstep(-0.22, 0.12, domes) * mix(0.5, 1.2, smoothstep(0.38, 0.60, connected));
   let billows = clamp(MEAN_BILLOW + 1.5 * domes + 2.2 * rough * knobs, 0.0, 1.0);
   let lumps = billows * 0.8 + noise.r * 0.2;
-  let amplitude = noise_amplitude(profile);
-  let strength = layer.shape_strength * dot(weather.types, vec3f(1.0, 0.7, 0.9));
-  return (1.2 * profile - 0.35 + strength * (lumps * amplitude - 0.65)) * 2.2;
+  return signed_field(profile, lumps, weather, layer);
 }
 
-// What erosion takes from the surface: billowy above, wispy below and where the user wants it.
-fn erosion(noise: vec4f, layer: LayerUniforms, h: f32, fade: f32) -> f32 {
+// How firmly a place is held by the cloud that it belongs to, 0..1: whether there were cloud even if the large domes were
+// half as high and had no knobs. Towers and middles are firm; scraps that the noise lifts out of clear air are not, and
+// mix with it: erosion goes through them and leaves little water.
+fn firmness(profile: f32, noise: vec4f, weather: Weather, layer: LayerUniforms) -> f32 {
+  let lumps = 0.8 * mix(MEAN_BILLOW, noise.g, 0.9) + 0.15;
+  return smoothstep(-0.2, 1.2, signed_field(profile, lumps, weather, layer));
+}
+
+// What erosion takes from the surface: billowy above, wispy below, in scraps and where the user wants it.
+fn erosion(noise: vec4f, firm: f32, layer: LayerUniforms, h: f32, fade: f32) -> f32 {
   let cells = dot(noise.rgb, vec3f(0.45, 0.33, 0.22));
   let wisps = noise.a * 0.6 + 0.4 * cells;
-  let wispy = max(1.0 - smoothstep(0.0, 0.22, h), layer.wispiness);
+  let wispy = max(max(1.0 - smoothstep(0.0, 0.22, h), 1.0 - firm), layer.wispiness);
   let carved = MEAN_EROSION + EROSION_CONTRAST * (mix(1.0 - cells, wisps, wispy) - 0.5);
   return mix(clamp(carved, 0.0, 1.0), MEAN_EROSION, fade) * layer.detail_strength;
 }
 
-// The signed field after erosion; only its surface is eaten.
-fn eroded(field: f32, amount: f32) -> f32 {
-  return field - amount * (1.0 - clamp(field, 0.0, 1.0));
+// How deep into the field erosion goes: below this it takes something everywhere, most at the surface.
+const EROSION_DEPTH: f32 = 3.0;
+// Erosion of a scrap relative to that of a body, and a scrap's density.
+const SCRAP_EROSION: f32 = 1.5;
+const SCRAP_DENSITY: f32 = 0.03;
+
+// The signed field after erosion.
+fn eroded(field: f32, amount: f32, firm: f32) -> f32 {
+  let deepest = amount * mix(SCRAP_EROSION, 1.0, firm) * EROSION_DEPTH;
+  return field - deepest * (1.0 - clamp(field / EROSION_DEPTH, 0.0, 1.0));
 }
 
 // Steepness of the density over the signed field.
 const STEEPNESS: f32 = 1.7;
 
 // Whether erosion can change the density at this value: where even the strongest leaves full density, it cannot.
-fn near_surface(field: f32, layer: LayerUniforms) -> bool {
-  return eroded(field, layer.detail_strength) * STEEPNESS * layer.sharpness < 1.0;
+fn near_surface(field: f32, firm: f32, layer: LayerUniforms) -> bool {
+  return eroded(field, layer.detail_strength, firm) * STEEPNESS * layer.sharpness < 1.0;
 }
 
 // Density 0..1. Liquid water grows with height above the base, nearly as its power 2/3 (Brenguier et al. 2000).
-fn profile_density(field: f32, layer: LayerUniforms, h: f32) -> f32 {
-  let solid = smoothstep(0.0, 1.0, field * STEEPNESS * layer.sharpness);
+fn profile_density(field: f32, firm: f32, layer: LayerUniforms, h: f32) -> f32 {
+  let solid = smoothstep(0.0, 1.0, field * STEEPNESS * layer.sharpness) * mix(SCRAP_DENSITY, 1.0, firm);
   return solid * mix(0.45, 1.0, clamp(h * 1.2, 0.0, 1.0));
 }
 
@@ -86,6 +108,6 @@ fn profile_bound(greatest_body: f32, layer: LayerUniforms) -> f32 {
   let body = mix(greatest_body, sqrt(greatest_body), layer.anvil);
   let strength = max(layer.shape_strength, 0.0);
   let lumps = noise_amplitude(body);
-  let field = (1.2 * body - 0.35 + max(strength * (lumps - 0.65), 0.7 * strength * (lumps - 0.65))) * 2.2;
+  let field = (1.2 * body - THINNEST_PROFILE + max(strength * (lumps - 0.65), 0.7 * strength * (lumps - 0.65))) * 2.2;
   return smoothstep(0.0, 1.0, field * STEEPNESS * layer.sharpness);
 }

@@ -181,22 +181,24 @@ fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   }
   count_read();
   let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
-  var field = billowed(profile, textureSampleLevel(shape_noise, linear_repeat, tile, reading.level), weather, layer);
+  let noise = textureSampleLevel(shape_noise, linear_repeat, tile, reading.level);
+  var field = billowed(profile, noise, weather, layer);
   if (field <= 0.0) {
     clearness = min(clearness, -2.0 * field);
     return 0.0;
   }
-  if (near_surface(field, layer) && layer.detail_strength > 0.0) {
+  let firm = firmness(profile, noise, weather, layer);
+  if (near_surface(field, firm, layer) && layer.detail_strength > 0.0) {
     var amount = MEAN_EROSION * layer.detail_strength;
 #if DETAIL
     if (reading.detail) {
-      amount = erosion(detail_texel(layer, p, h, reading), layer, h, reading.fade);
+      amount = erosion(detail_texel(layer, p, h, reading), firm, layer, h, reading.fade);
     }
 #endif
-    field = eroded(field, amount);
-    clearness = 0.0;
+    field = eroded(field, amount, firm);
+    clearness = min(clearness, max(-0.7 * field, 0.0));
   }
-  return profile_density(field, layer, h);
+  return profile_density(field, firm, layer, h);
 }
 #endif
 

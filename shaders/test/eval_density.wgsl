@@ -35,17 +35,21 @@ fn place(id: vec3u) -> Place {
   let at = place(id);
   let profile = height_profile(at.weather, at.layer, at.h);
   let field = billowed(profile, at.large, at.weather, at.layer);
-  store(id, vec4f(top_height(at.weather, at.layer), profile, field, erosion(at.small, at.layer, at.h, at.fade)));
+  let firm = firmness(profile, at.large, at.weather, at.layer);
+  store(id, vec4f(firm, profile, field, erosion(at.small, firm, at.layer, at.h, at.fade)));
 }
 
 // Density, bound, and the density without erosion.
 @compute @workgroup_size(64) fn eval_profile_density(@builtin(global_invocation_id) id: vec3u) {
   if (!is_case(id)) { return; }
   let at = place(id);
-  let field = billowed(height_profile(at.weather, at.layer, at.h), at.large, at.weather, at.layer);
-  let density = profile_density(eroded(field, erosion(at.small, at.layer, at.h, at.fade)), at.layer, at.h);
-  store(id, vec4f(density, profile_bound(at.weather.body, at.layer), profile_density(field, at.layer, at.h),
-    select(0.0, 1.0, near_surface(field, at.layer))));
+  let profile = height_profile(at.weather, at.layer, at.h);
+  let field = billowed(profile, at.large, at.weather, at.layer);
+  let firm = firmness(profile, at.large, at.weather, at.layer);
+  let amount = erosion(at.small, firm, at.layer, at.h, at.fade);
+  let density = profile_density(eroded(field, amount, firm), firm, at.layer, at.h);
+  store(id, vec4f(density, profile_bound(at.weather.body, at.layer), profile_density(field, firm, at.layer, at.h),
+    select(0.0, 1.0, near_surface(field, firm, at.layer))));
 }
 
 @compute @workgroup_size(64) fn eval_thesis(@builtin(global_invocation_id) id: vec3u) {

@@ -66,6 +66,18 @@ pub fn height_profile(weather: &Weather, layer: &LayerUniforms, h: f32) -> f32 {
     body * base * crown.max(0.0).sqrt()
 }
 
+fn signed_field(profile: f32, lumps: f32, weather: &Weather, layer: &LayerUniforms) -> f32 {
+    let strength = layer.shape_strength * weather.types.dot(Vec3::new(1.0, 0.7, 0.9));
+    (1.2 * profile - 0.23 + strength * (lumps * smoothstep(0.04, 0.58, profile) - 0.65)) * 2.2
+}
+
+/// How firmly a place is held by the cloud it belongs to, 0 to 1.
+#[must_use]
+pub fn firmness(profile: f32, noise: Vec4, weather: &Weather, layer: &LayerUniforms) -> f32 {
+    let lumps = 0.8 * mix(MEAN_BILLOW, noise.y, 0.9) + 0.15;
+    smoothstep(-0.2, 1.2, signed_field(profile, lumps, weather, layer))
+}
+
 /// Signed field after the large noise, positive inside.
 #[must_use]
 pub fn billowed(profile: f32, noise: Vec4, weather: &Weather, layer: &LayerUniforms) -> f32 {
@@ -75,30 +87,30 @@ pub fn billowed(profile: f32, noise: Vec4, weather: &Weather, layer: &LayerUnifo
     let rough = smoothstep(-0.22, 0.12, domes) * mix(0.5, 1.2, smoothstep(0.38, 0.60, connected));
     let billows = (MEAN_BILLOW + 1.5 * domes + 2.2 * rough * knobs).clamp(0.0, 1.0);
     let lumps = billows * 0.8 + noise.x * 0.2;
-    let strength = layer.shape_strength * weather.types.dot(Vec3::new(1.0, 0.7, 0.9));
-    (1.2 * profile - 0.35 + strength * (lumps * smoothstep(0.04, 0.58, profile) - 0.65)) * 2.2
+    signed_field(profile, lumps, weather, layer)
 }
 
 /// What erosion takes from the surface; `fade` is how far the noise has faded to its mean.
 #[must_use]
-pub fn erosion(noise: Vec4, layer: &LayerUniforms, h: f32, fade: f32) -> f32 {
+pub fn erosion(noise: Vec4, firm: f32, layer: &LayerUniforms, h: f32, fade: f32) -> f32 {
     let cells = noise.xyz().dot(Vec3::new(0.45, 0.33, 0.22));
     let wisps = noise.w * 0.6 + 0.4 * cells;
-    let wispy = (1.0 - smoothstep(0.0, 0.22, h)).max(layer.wispiness);
+    let wispy = (1.0 - smoothstep(0.0, 0.22, h)).max(1.0 - firm).max(layer.wispiness);
     let carved = MEAN_EROSION + EROSION_CONTRAST * (mix(1.0 - cells, wisps, wispy) - 0.5);
     mix(carved.clamp(0.0, 1.0), MEAN_EROSION, fade) * layer.detail_strength
 }
 
 /// The signed field after erosion.
 #[must_use]
-pub fn eroded(field: f32, amount: f32) -> f32 {
-    field - amount * (1.0 - field.clamp(0.0, 1.0))
+pub fn eroded(field: f32, amount: f32, firm: f32) -> f32 {
+    field - amount * mix(1.5, 1.0, firm) * 3.0 * (1.0 - (field / 3.0).clamp(0.0, 1.0))
 }
 
 /// Density of the profile model, 0 to 1.
 #[must_use]
-pub fn profile_density(field: f32, layer: &LayerUniforms, h: f32) -> f32 {
-    smoothstep(0.0, 1.0, field * 1.7 * layer.sharpness) * mix(0.45, 1.0, (h * 1.2).clamp(0.0, 1.0))
+pub fn profile_density(field: f32, firm: f32, layer: &LayerUniforms, h: f32) -> f32 {
+    let solid = smoothstep(0.0, 1.0, field * 1.7 * layer.sharpness) * mix(0.03, 1.0, firm);
+    solid * mix(0.45, 1.0, (h * 1.2).clamp(0.0, 1.0))
 }
 
 fn trapezoid(h: f32, [a, b, c, d]: [f32; 4]) -> f32 {

@@ -95,8 +95,8 @@ fn the_models_follow_their_twins() {
         let (weather, layer) = (weather(input), &input.layer);
         let profile = density::height_profile(&weather, layer, input.h);
         let field = density::billowed(profile, input.large, &weather, layer);
-        let erosion = density::erosion(input.small, layer, input.h, input.fade);
-        [density::top_height(&weather, layer), profile, field, erosion]
+        let firm = density::firmness(profile, input.large, &weather, layer);
+        [firm, profile, field, density::erosion(input.small, firm, layer, input.h, input.fade)]
     });
     compare("eval_thesis", |input| {
         let weather = weather(input);
@@ -115,8 +115,9 @@ fn the_densities_follow_their_twins() {
         let (weather, layer) = (Weather::from_texel(input.texel, &input.layer, input.bias), &input.layer);
         let allowed = density::height_profile(&weather, layer, input.h);
         let field = density::billowed(allowed, input.large, &weather, layer);
-        let amount = density::erosion(input.small, layer, input.h, input.fade);
-        let expected = density::profile_density(density::eroded(field, amount), layer, input.h);
+        let firm = density::firmness(allowed, input.large, &weather, layer);
+        let amount = density::erosion(input.small, firm, layer, input.h, input.fade);
+        let expected = density::profile_density(density::eroded(field, amount, firm), firm, layer, input.h);
         // Ten times steeper than the field at the greatest sharpness.
         assert!((profile[0] - expected).abs() < 5e-4, "profile {input:?}: {} not {expected}", profile[0]);
         let field = density::thesis_field(density::thesis_profile(&weather, input.h), input.large, &weather, layer);
