@@ -87,13 +87,16 @@ fn clearance_at(p: vec3f, distance_m: f32) -> f32 {
   return altitude_at(p, ground.planet_radius_m) - ground_height(p.xz, distance_m);
 }
 
-// Distance to the relief between start and end, or -1: steps by clearance, then halves the last one.
-fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32) -> f32 {
+// Distance to the relief between start and end, or -1: steps by clearance, then halves the last one. Where the ray ends
+// in the sea it has met land before, if only in the last step.
+fn relief_hit(origin: vec3f, dir: vec3f, start: f32, end: f32, ends_in_sea: bool) -> f32 {
   var t = start;
   var before = start;
   var is_hit = false;
   for (var i = 0u; i < 56u; i++) {
     if (t >= end) {
+      t = end;
+      is_hit = ends_in_sea;
       break;
     }
     let clearance = clearance_at(origin + dir * t, t);
@@ -129,7 +132,7 @@ fn ground_hit(origin: vec3f, dir: vec3f) -> f32 {
   let plain_until = max(PLAIN_M - length(ground.plain_at), 0.0) / flat;
   var relief = -1.0;
   if (ceiling.y > 0.0 && !(is_down && sea_distance < plain_until)) {
-    relief = relief_hit(origin, dir, max(start, plain_until), end);
+    relief = relief_hit(origin, dir, max(start, plain_until), end, is_down && end == sea_distance);
   }
   return select(sea_distance, relief, relief >= 0.0);
 #else
