@@ -81,7 +81,7 @@ fn erosion(noise: vec4f, firm: f32, layer: LayerUniforms, h: f32, fade: f32) -> 
 const EROSION_DEPTH: f32 = 3.0;
 // Erosion of a scrap relative to that of a body, and a scrap's density.
 const SCRAP_EROSION: f32 = 1.5;
-const SCRAP_DENSITY: f32 = 0.03;
+const SCRAP_DENSITY: f32 = 0.01;
 
 // The signed field after erosion.
 fn eroded(field: f32, amount: f32, firm: f32) -> f32 {
@@ -99,7 +99,7 @@ fn near_surface(field: f32, firm: f32, layer: LayerUniforms) -> bool {
 
 // Density 0..1. Liquid water grows with height above the base, nearly as its power 2/3 (Brenguier et al. 2000).
 fn profile_density(field: f32, firm: f32, layer: LayerUniforms, h: f32) -> f32 {
-  let solid = smoothstep(0.0, 1.0, field * STEEPNESS * layer.sharpness) * mix(SCRAP_DENSITY, 1.0, firm);
+  let solid = smoothstep(0.0, 1.0, field * STEEPNESS * layer.sharpness) * mix(SCRAP_DENSITY, 1.0, firm * firm);
   return solid * mix(0.45, 1.0, clamp(h * 1.2, 0.0, 1.0));
 }
 

@@ -109,7 +109,7 @@ pub fn eroded(field: f32, amount: f32, firm: f32) -> f32 {
 /// Density of the profile model, 0 to 1.
 #[must_use]
 pub fn profile_density(field: f32, firm: f32, layer: &LayerUniforms, h: f32) -> f32 {
-    let solid = smoothstep(0.0, 1.0, field * 1.7 * layer.sharpness) * mix(0.03, 1.0, firm);
+    let solid = smoothstep(0.0, 1.0, field * 1.7 * layer.sharpness) * mix(0.01, 1.0, firm * firm);
     solid * mix(0.45, 1.0, (h * 1.2).clamp(0.0, 1.0))
 }
 
