@@ -32,6 +32,8 @@ fn height_profile(weather: Weather, layer: LayerUniforms, h: f32) -> f32 {
 
 // Mean of each of the large noise's sums of billows.
 const MEAN_BILLOW: f32 = 0.48;
+// And, nearly, of its Perlin-Worley noise: half of what the billows leave is added to them.
+const MEAN_PERLIN_WORLEY: f32 = 0.75;
 
 // What is taken from every profile, so that clear air is clear.
 const THINNEST_PROFILE: f32 = 0.23;
@@ -48,8 +50,8 @@ fn signed_field(profile: f32, lumps: f32, weather: Weather, layer: LayerUniforms
   return (1.2 * profile - THINNEST_PROFILE + strength * (lumps * noise_amplitude(profile) - 0.65)) * 2.2;
 }
 
-// Signed field after the large noise. Noise is added, not multiplied. Knobs sit on domes and not in the
-// hollows between them: a cloud of one roughness looks like foam, and knobs beside a dome would float.
+// Signed field after the large noise. Noise is added, not multiplied. Knobs sit on domes and not in the hollows between
+// them: a cloud of one roughness looks like foam, and knobs beside a dome would float.
 fn billowed(profile: f32, noise: vec4f, weather: Weather, layer: LayerUniforms) -> f32 {
   let domes = noise.g - MEAN_BILLOW;
   let knobs = dot(noise.ba, vec2f(0.58, 0.42)) - MEAN_BILLOW;
@@ -60,11 +62,12 @@ fn billowed(profile: f32, noise: vec4f, weather: Weather, layer: LayerUniforms) 
   return signed_field(profile, lumps, weather, layer);
 }
 
-// How firmly a place is held by the cloud that it belongs to, 0..1: whether there were cloud even if the large domes were
-// half as high and had no knobs. Towers and middles are firm; scraps that the noise lifts out of clear air are not, and
-// mix with it: erosion goes through them and leaves little water.
+// How firmly a place is held by the cloud that it belongs to, 0..1: whether there were cloud even if domes were three
+// fifths as high as in `billowed`, had no knobs, and Perlin-Worley noise were everywhere at its mean. Towers and middles
+// are firm; scraps that the noise lifts out of clear air are not, and mix with it: erosion goes through them and leaves
+// little water.
 fn firmness(profile: f32, noise: vec4f, weather: Weather, layer: LayerUniforms) -> f32 {
-  let lumps = 0.8 * mix(MEAN_BILLOW, noise.g, 0.9) + 0.15;
+  let lumps = 0.8 * mix(MEAN_BILLOW, noise.g, 0.9) + 0.2 * MEAN_PERLIN_WORLEY;
   return smoothstep(-0.2, 1.2, signed_field(profile, lumps, weather, layer));
 }
 

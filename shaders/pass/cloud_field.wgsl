@@ -196,6 +196,7 @@ fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
     }
 #endif
     field = eroded(field, amount, firm);
+    // Air that erosion has cleared lies deep in the field: steps in it need not all be short.
     clearness = min(clearness, max(-0.7 * field, 0.0));
   }
   return profile_density(field, firm, layer, h);
