@@ -14,6 +14,7 @@ mod gpu {
     mod random;
     mod shaders;
     mod shell;
+    mod stills;
     mod temporal;
     mod textures;
     mod truth;

@@ -402,6 +402,7 @@ fn the_status_is_shown_while_there_is_one_and_faults_always() {
     let refined = Refined {
         integrator: Integrator::Converged,
         finished: Some(1),
+        pixel_samples: (0, 4),
         share: 0.4,
         error: Some(0.013),
         spent_secs: 12.0,
@@ -409,6 +410,12 @@ fn the_status_is_shown_while_there_is_one_and_faults_always() {
     editor.truth().view.refinement = Refinement::Working(refined);
     editor.harness.run();
     assert!(editor.has_label("refining: level 2, 40 %, changed 1.3 % last"));
+    editor.truth().view.refinement = Refinement::Working(Refined { pixel_samples: (1, 4), ..refined });
+    editor.harness.run();
+    assert!(editor.has_label("refining: sample 2 of 4 a pixel, 40 %"));
+    editor.truth().view.refinement = Refinement::Smoothing { finished: 0, count: 4 };
+    editor.harness.run();
+    assert!(editor.has_label("smoothing: sample 1 of 4 a pixel"));
     editor.truth().view.refinement = Refinement::Done(Refined { error: Some(0.004), ..refined }, true);
     editor.truth().view.faults = vec!["Fault: 3 rays were cut short".to_owned()];
     editor.harness.run();

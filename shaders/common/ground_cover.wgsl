@@ -95,12 +95,15 @@ fn ground_cover(p: vec2f, footprint_m: f32, wet: f32) -> GroundCover {
   var slope = vec2f(0.0);
   let near = shown(11.0, footprint_m);
   if (near > 0.0) {
-    // Crowns of trees, or lumps of a meadow; then tufts.
-    let lumps = lattice_noise(p / 11.0, 905u);
+    // Crowns of trees, or lumps of a meadow; then tufts. Two lattices at an angle, bent, show no rows of either.
+    let turned = vec2f(0.8 * bent.x + 0.6 * bent.y, 0.8 * bent.y - 0.6 * bent.x);
+    let crowns = lattice_noise(turned / 7.3, 907u);
+    let turned_back = vec3f(crowns.x, 0.8 * crowns.yz - 0.6 * vec2f(crowns.z, -crowns.y));
+    let lumps = mix(lattice_noise(bent / 11.0, 905u), turned_back, 0.5);
     let tufts = lattice_noise(p / 2.7, 906u);
     let finest = shown(2.7, footprint_m);
     tint *= 1.0 + near * 0.35 * (lumps.x - 0.5) + finest * 0.5 * (tufts.x - 0.5);
-    slope = lumps.yz * near * mix(0.08, 0.5, woods) + tufts.yz * finest * 0.22;
+    slope = lumps.yz * near * mix(0.08, 0.3, woods) + tufts.yz * finest * 0.22;
   }
   return GroundCover(tint, slope);
 }

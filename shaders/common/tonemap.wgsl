@@ -7,6 +7,11 @@ fn srgb_encoded(linear: vec3f) -> vec3f {
   return select(1.055 * pow(max(c, vec3f(1e-8)), vec3f(1.0 / 2.4)) - 0.055, 12.92 * c, c <= vec3f(0.0031308));
 }
 
+fn srgb_decoded(encoded: vec3f) -> vec3f {
+  let c = clamp(encoded, vec3f(0.0), vec3f(1.0));
+  return select(pow((c + 0.055) / 1.055, vec3f(2.4)), c / 12.92, c <= vec3f(0.04045));
+}
+
 // Contrast round middle grey and saturation, on light.
 fn graded(light: vec3f, contrast: f32, saturation: f32) -> vec3f {
   let c = 0.18 * pow(max(light, vec3f(1e-8)) / 0.18, vec3f(contrast));

@@ -46,7 +46,7 @@ fn sky_with_lights(dir: vec3f) -> vec3f {
   // The discs are small: most directions need not look closer.
   if (max(dot(dir, air.towards_sun) - cos(air.sun_angular_radius + DISC_MARGIN),
       dot(dir, air.towards_moon) - cos(air.moon_angular_radius + DISC_MARGIN)) > 0.0) {
-    let discs = sun_disc(air, dir, view.pixel_angle) + moon_disc(air, dir, view.pixel_angle);
+    let discs = sun_disc(air, dir, view.sample_angle) + moon_disc(air, dir, view.sample_angle);
     light += discs * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
   }
 #if STARS
@@ -183,7 +183,7 @@ fn ground_light(p: vec3f, dir: vec3f, distance_m: f32) -> vec3f {
   let uv = p.xz * ground.tile_from_world.z + ground.tile_from_world.xy;
   wet = textureSampleLevel(terrain_map, linear_repeat, uv, 0.0).z;
 #endif
-  let footprint = distance_m * view.pixel_angle / max(-dot(flat_normal, dir), 0.01);
+  let footprint = distance_m * view.sample_angle / max(-dot(flat_normal, dir), 0.01);
   let cover = ground_cover(place, footprint, wet);
   let normal = normalize(flat_normal - vec3f(cover.slope.x, 0.0, cover.slope.y));
   let albedo = with_rock(ground.albedo * cover.tint, p, flat_normal);
@@ -211,7 +211,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   if (any(pixel >= view.size) || id.y >= band.rows) {
     return;
   }
-  let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+  let dir = ray_through(view.camera, (vec2f(pixel) + view.pixel_point) / vec2f(view.size));
 #if GROUND
   var eye = view.camera.eye;
 #if TERRAIN

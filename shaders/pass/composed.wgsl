@@ -13,6 +13,11 @@
 @group(1) @binding(3) var linear_clamp: sampler;
 #endif
 
+// The mean of all samples so far. Before the first there is nothing worth reading.
+fn mean_with(before: vec4f, sample: vec4f) -> vec4f {
+  return select(mix(before, sample, view.sample_share), sample, view.sample_share >= 1.0);
+}
+
 fn composed_light(pixel: vec2u) -> vec3f {
   var light = textureLoad(background, pixel, 0).rgb;
 #if CLOUDS

@@ -60,7 +60,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   if (ray.is_done == 1u) {
     return;
   }
-  let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+  let dir = ray_through(view.camera, (vec2f(pixel) + view.pixel_point) / vec2f(view.size));
   let origin = view.camera.eye;
   let segments = domain_segments(origin, dir);
   var limit = truth.furthest_m;

@@ -178,7 +178,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     return;
   }
   let pixel = pixel_of_ray(ray, view);
-  let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+  let dir = ray_through(view.camera, (vec2f(pixel) + view.pixel_point) / vec2f(view.size));
   let origin = view.camera.eye;
   let segments = domain_segments(origin, dir);
   var limit = scene.max_distance_m;
@@ -189,7 +189,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   var seen = Seen(vec3f(0.0), 1.0, 0.0, 0.0);
   if (segments.first.y > segments.first.x && segments.first.x < limit) {
     prepare_light(dir);
-    let jitter = textureLoad(blue_noise, pixel % textureDimensions(blue_noise), 0).x * view.jitter.x + view.jitter.y;
+    let noise = textureLoad(blue_noise, pixel % textureDimensions(blue_noise), 0).x;
+    let jitter = fract(noise * view.jitter.x + view.jitter.y);
     steps_left = scene.view_steps;
     key_light_altitude = -1e9;
     let first = vec2f(segments.first.x, min(segments.first.y, limit));

@@ -95,7 +95,7 @@ fn finish() {
 
 fn pixel_uv() -> vec2f {
   let pixel = vec2u(path.pixel % view.size.x, path.pixel / view.size.x);
-  return (vec2f(pixel) + 0.5) / vec2f(view.size);
+  return (vec2f(pixel) + view.pixel_point) / vec2f(view.size);
 }
 
 // Distance from a place above to the plain at sea level, or -1.
@@ -292,7 +292,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   }
   sums = path_sums[index];
   path.pixel = pixel.y * view.size.x + pixel.x;
-  let dir = ray_through(view.camera, (vec2f(pixel) + 0.5) / vec2f(view.size));
+  let dir = ray_through(view.camera, (vec2f(pixel) + view.pixel_point) / vec2f(view.size));
   let segments = domain_segments(view.camera.eye, dir);
   var limit = truth.furthest_m;
 #if GROUND

@@ -7,6 +7,10 @@
 @group(0) @binding(1) var<uniform> display: DisplayUniforms;
 @group(0) @binding(2) var blue_noise: texture_2d<f32>;
 @group(0) @binding(3) var<uniform> band: BandUniforms;
+#if SAMPLES
+@group(1) @binding(4) var shown_before: texture_2d<f32>;
+@group(2) @binding(1) var shown_out: texture_storage_2d<rgba16float, write>;
+#endif
 @group(2) @binding(0) var display_out: texture_storage_2d<rgba8unorm, write>;
 
 override TONE_MAP: u32 = 0u;
@@ -30,6 +34,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
       colour = srgb_encoded(clamp(graded(light, display.contrast, display.saturation), vec3f(0.0), vec3f(1.0)));
     }
   }
+#if SAMPLES
+  let shown = mean_with(textureLoad(shown_before, pixel, 0), vec4f(srgb_decoded(colour), 1.0));
+  textureStore(shown_out, pixel, shown);
+  colour = srgb_encoded(shown.rgb);
+#endif
   let noise = textureLoad(blue_noise, pixel % textureDimensions(blue_noise), 0).x;
   let dithered = clamp(colour, vec3f(0.0), vec3f(1.0)) * 255.0 + noise;
   textureStore(display_out, pixel, vec4f(floor(dithered) / 255.0, 1.0));

@@ -34,10 +34,12 @@ pub(super) enum Place {
     Converged,
     /// The path-traced picture.
     Traced,
+    /// What the window shows at rest.
+    AtRest,
 }
 
 impl Place {
-    const COUNT: usize = 4;
+    const COUNT: usize = 5;
 }
 
 /// A frame of the panels that was run but not yet drawn.

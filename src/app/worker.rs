@@ -174,13 +174,13 @@ fn still(job: &StillJob) -> anyhow::Result<()> {
         time_secs: job.time_secs,
         output,
     };
-    renderer.render(&frame)?;
+    let still = renderer.still(&frame)?;
     let path = &job.export.path;
     if job.export.still == Still::Png {
-        let (size, pixels) = renderer.display_rgba8()?;
+        let (size, pixels) = renderer.rgba8_of(&still.into_display())?;
         save_png(path, size, &pixels, &job.about())?;
     } else {
-        save_exr(path, &renderer.linear()?, &job.about(), ExrOptions::default())?;
+        save_exr(path, &still.picture(&renderer)?.image, &job.about(), ExrOptions::default())?;
     }
     Ok(())
 }

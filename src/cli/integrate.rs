@@ -81,7 +81,7 @@ pub(super) fn converge(renderer: &mut Renderer, frame: &Frame<'_>, goal: Goal) -
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {msg}") {
         bar.set_style(style);
     }
-    let mut truth = renderer.begin_truth(frame, goal)?;
+    let mut truth = renderer.begin_truth(frame, goal, frame.quality.pixel_samples)?;
     loop {
         let progress = truth.advance(renderer, BUDGET, SLICE)?;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 1000")]
@@ -98,7 +98,10 @@ pub(super) fn converge(renderer: &mut Renderer, frame: &Frame<'_>, goal: Goal) -
 /// How far it is, in words.
 pub(super) fn describe(goal: Goal, progress: &Convergence) -> String {
     let finished = match (goal, progress.finished) {
-        (Goal::Converged { .. }, Some(level)) => format!("level {level}"),
+        (Goal::Converged { .. }, Some(level)) => match progress.pixel_samples {
+            0 | 1 => format!("level {level}"),
+            several => format!("level {level}, {several} samples a pixel"),
+        },
         (Goal::PathTraced { .. }, Some(samples)) => format!("{samples} samples"),
         (_, None) if progress.is_done => "no cloud in view".to_owned(),
         (_, None) => "nothing finished yet".to_owned(),

@@ -276,19 +276,23 @@ fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, t
     let failed = || format!("{} could not be rendered", path.display());
     let (display, linear) = match job.goal {
         None => {
-            renderer.render(&frame).with_context(failed)?;
-            (renderer.display_rgba8()?, (job.format == Format::Exr).then(|| renderer.linear()).transpose()?)
+            let still = renderer.still(&frame).with_context(failed)?;
+            let linear = (job.format == Format::Exr).then(|| still.picture(renderer)).transpose()?;
+            (still.into_display(), linear)
         }
         Some(goal) => {
-            let mut truth = converge(renderer, &frame, goal).with_context(failed)?;
-            let picture = truth.picture(renderer)?;
+            let truth = converge(renderer, &frame, goal).with_context(failed)?;
             eprintln!("{}: {}", path.display(), describe(goal, &truth.progress()));
-            (truth.display_rgba8(renderer)?, Some(picture.image))
+            let linear = (job.format == Format::Exr).then(|| truth.picture(renderer)).transpose()?;
+            (truth.into_display(), linear)
         }
     };
-    match (job.format, linear) {
-        (Format::Exr, Some(linear)) => save_exr(path, &linear, &about, args.exr_options()).map(|_| ())?,
-        _ => save_png(path, display.0, &display.1, &about)?,
+    match linear {
+        Some(linear) => save_exr(path, &linear.image, &about, args.exr_options()).map(|_| ())?,
+        None => {
+            let (size, pixels) = renderer.rgba8_of(&display)?;
+            save_png(path, size, &pixels, &about)?;
+        }
     }
     Ok(())
 }

@@ -44,10 +44,19 @@ pub enum AccuracyError {
     /// A sweep over what the sky is.
     #[error("{0} is a parameter of the sky; accuracy is swept over quality, such as quality.light_steps=2,4,8")]
     NotQuality(String),
+    /// A sweep over what pictures that are measured do not have.
+    #[error(
+        "{0} says how a picture is put together; what is measured is one whole march through the middle of each pixel"
+    )]
+    NotOfMarch(String),
     /// Too many settings.
     #[error("the axes make {0} settings, but at most {MAX_SETTINGS} are measured; leave out some values")]
     TooMany(usize),
 }
+
+/// Parameters that a whole march through the middle of each pixel does without.
+const PUT_TOGETHER: [&str; 4] =
+    ["quality.update", "quality.update_order", "quality.resolution_scale", "quality.pixel_samples"];
 
 /// One parameter of quality and the values it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -62,7 +71,7 @@ impl Axis {
     /// Reads `quality.light_steps=2,4,8`.
     ///
     /// # Errors
-    /// [`AccuracyError::NoAxis`] and [`AccuracyError::NotQuality`].
+    /// [`AccuracyError::NoAxis`], [`AccuracyError::NotQuality`] and [`AccuracyError::NotOfMarch`].
     pub fn parse(text: &str) -> Result<Self, AccuracyError> {
         let refused = || AccuracyError::NoAxis(text.to_owned());
         let (key, values) = text.split_once('=').ok_or_else(refused)?;
@@ -73,6 +82,9 @@ impl Axis {
         }
         if !key.trim().starts_with("quality.") {
             return Err(AccuracyError::NotQuality(key.trim().to_owned()));
+        }
+        if PUT_TOGETHER.contains(&key.trim()) {
+            return Err(AccuracyError::NotOfMarch(key.trim().to_owned()));
         }
         Ok(Self { key: key.trim().to_owned(), values })
     }
@@ -165,7 +177,7 @@ pub fn truth(
     watch: &mut dyn FnMut(&Convergence),
 ) -> Result<TruthImage, AccuracyError> {
     let quality = of_still(quality);
-    let mut truth = renderer.begin_truth(&still(scene, &quality, size), goal)?;
+    let mut truth = renderer.begin_truth(&still(scene, &quality, size), goal, 1)?;
     let progress = loop {
         let progress = truth.advance(renderer, Duration::from_millis(500), Duration::from_millis(200))?;
         watch(&progress);
@@ -174,7 +186,7 @@ pub fn truth(
         }
     };
     let picture = truth.picture(renderer)?;
-    let (_, display) = truth.display_rgba8(renderer)?;
+    let (_, display) = renderer.rgba8_of(&truth.into_display())?;
     Ok(TruthImage {
         integrator: goal.integrator(),
         progress,
@@ -432,6 +444,8 @@ mod tests {
         let refused = |text: &str| settings(&Quality::default(), &[Axis::parse(text).expect("an axis")]);
         assert!(matches!(refused("quality.light_steps=2,100000"), Err(AccuracyError::Edit(EditError::OutOfRange(_)))));
         assert!(matches!(refused("quality.lihgt_steps=2"), Err(AccuracyError::Edit(EditError::UnknownKey { .. }))));
+        let samples = Axis::parse("quality.pixel_samples=1,4");
+        assert!(matches!(samples, Err(AccuracyError::NotOfMarch(_))), "{samples:?} would change nothing");
         let many: Vec<String> = (4..=404).map(|steps| steps.to_string()).collect();
         let axis = Axis { key: "quality.view_steps".to_owned(), values: many };
         assert!(matches!(settings(&Quality::default(), &[axis]), Err(AccuracyError::TooMany(401))));

@@ -51,7 +51,8 @@ pub(super) fn open_rows(frame: &Frame<'_>) -> u32 {
     let right = direction(0.0, camera.heading_deg + 90.0).as_dvec3();
     let up = right.cross(forward);
     let lowest_elevation = |row: u32| {
-        let v = (f64::from(row) + 0.5) / f64::from(height);
+        // At the lower edge of its pixels: samples lie anywhere in them.
+        let v = f64::from(row + 1) / f64::from(height);
         match camera.projection {
             Projection::Perspective => {
                 // In a row above the horizon rays at its ends are the lowest.

@@ -63,6 +63,8 @@ pub struct FramePlan {
     pub tone_map: ToneMap,
     /// Whether clouds are found by tracking, which needs bounds of their density.
     pub tracks: bool,
+    /// Samples of each pixel; those of paths are their own.
+    pub pixel_samples: u32,
     /// Why each entry is as it is.
     pub reasons: Vec<Reason>,
 }
@@ -88,13 +90,17 @@ impl FramePlan {
             alone: frame.output == Output::CloudsAlone,
             tone_map: scene.display.tone_map,
             tracks: false,
+            pixel_samples: 1,
             reasons: why.0,
         }
     }
 
-    /// The plan of a frame whose clouds a reference integrator finds: all pixels, at the frame's own size.
-    pub fn for_truth(frame: &Frame<'_>, integrator: Integrator) -> Self {
-        Self { temporal: None, tracks: integrator == Integrator::PathTraced, ..Self::new(frame) }
+    /// The plan of a picture that takes its time: all pixels, with several samples each but for paths, at the frame's own
+    /// size.
+    pub fn for_still(frame: &Frame<'_>, integrator: Integrator, pixel_samples: u32) -> Self {
+        let is_traced = integrator == Integrator::PathTraced;
+        let pixel_samples = if is_traced { 1 } else { pixel_samples.max(1) };
+        Self { temporal: None, tracks: is_traced, pixel_samples, ..Self::new(frame) }
     }
 }
 

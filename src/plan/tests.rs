@@ -115,3 +115,14 @@ fn every_entry_has_its_reason_once() {
     assert_eq!(effects.len(), count);
     assert!(plan.reasons.iter().all(|reason| reason.because.len() > 6), "{:?}", plan.reasons);
 }
+
+#[test]
+fn stills_march_all_pixels_several_times_and_paths_have_samples_of_their_own() {
+    let (scene, quality) = (Scene::default(), Quality::default());
+    let frame = Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output: Output::Display };
+    assert_eq!(FramePlan::new(&frame).pixel_samples, 1, "a moving picture has one");
+    let still = FramePlan::for_still(&frame, Integrator::Realtime, 4);
+    assert_eq!((still.temporal, still.pixel_samples, still.tracks), (None, 4, false));
+    let traced = FramePlan::for_still(&frame, Integrator::PathTraced, 4);
+    assert_eq!((traced.pixel_samples, traced.tracks), (1, true));
+}

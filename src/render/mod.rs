@@ -11,6 +11,7 @@ mod interactive;
 mod output;
 pub mod pass;
 mod passes;
+mod samples;
 mod schedule;
 pub mod shaders;
 mod still;

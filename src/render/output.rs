@@ -55,8 +55,7 @@ impl Renderer {
     /// [`RenderError::Gpu`] if the device fails.
     pub fn linear(&self) -> Result<LinearImage, RenderError> {
         let candela_per_unit = self.candela_per_unit;
-        let Some((targets, linear)) =
-            self.targets.as_ref().and_then(|targets| Some((targets, targets.linear.as_ref()?)))
+        let Some((targets, linear)) = self.targets.as_ref().and_then(|targets| Some((targets, targets.linear(0)?)))
         else {
             return Ok(LinearImage { size: [0, 0], rgba: Vec::new(), distance_m: Vec::new(), candela_per_unit });
         };

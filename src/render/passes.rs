@@ -108,7 +108,10 @@ fn composed_flags(plan: &FramePlan) -> impl Iterator<Item = &'static str> {
 
 fn composite_key(plan: &FramePlan) -> ProgramKey {
     let alone = plan.alone && plan.march.is_some();
-    ProgramKey::plain("pass/composite.wgsl").with_flags(composed_flags(plan)).with_flags(alone.then_some("ALONE"))
+    ProgramKey::plain("pass/composite.wgsl")
+        .with_flags(composed_flags(plan))
+        .with_flags(alone.then_some("ALONE"))
+        .with_flags(samples_flag(plan))
 }
 
 fn tonemap_key(plan: &FramePlan) -> ProgramKey {
@@ -117,7 +120,14 @@ fn tonemap_key(plan: &FramePlan) -> ProgramKey {
         ToneMap::Neutral => 1,
         ToneMap::Linear => 2,
     };
-    ProgramKey::plain("pass/tonemap.wgsl").with_flags(composed_flags(plan)).with_constant("TONE_MAP", curve)
+    ProgramKey::plain("pass/tonemap.wgsl")
+        .with_flags(composed_flags(plan))
+        .with_flags(samples_flag(plan))
+        .with_constant("TONE_MAP", curve)
+}
+
+fn samples_flag(plan: &FramePlan) -> Option<&'static str> {
+    (plan.pixel_samples > 1).then_some("SAMPLES")
 }
 
 fn temporal_key(with_history: bool) -> ProgramKey {
@@ -228,8 +238,25 @@ impl<'a> Passes<'a> {
         Ok(())
     }
 
-    /// Linear light for a file, and the picture for the screen.
-    pub(super) fn finish(&mut self, cloud: Option<&'a Texture>, display: &'a Texture) -> Result<(), GpuError> {
+    /// [`Self::finish`] with each of the two means, or twice the same where pixels have a single sample. The jobs before it
+    /// must have been taken.
+    pub(super) fn finish_into_either(&mut self, cloud: Option<&'a Texture>) -> Result<[Vec<Job>; 2], GpuError> {
+        let mut either = [Vec::new(), Vec::new()];
+        for (side, jobs) in either.iter_mut().enumerate() {
+            self.finish(cloud, &self.targets.display[0], side)?;
+            *jobs = std::mem::take(&mut self.jobs);
+        }
+        Ok(either)
+    }
+
+    /// Linear light for a file, and the picture for the screen. Where pixels have several samples, `side` says which of
+    /// the two means this one goes into.
+    pub(super) fn finish(
+        &mut self,
+        cloud: Option<&'a Texture>,
+        display: &'a Texture,
+        side: usize,
+    ) -> Result<(), GpuError> {
         let targets = self.targets;
         let mut own = vec![("background", view_of(&targets.background)), ("display_out", view_of(display))];
         if let Some(cloud) = cloud {
@@ -238,8 +265,12 @@ impl<'a> Passes<'a> {
         if let Some([_, shafts]) = &targets.shafts {
             own.push(("shafts_light", view_of(shafts)));
         }
-        if let Some(linear) = &targets.linear {
+        if let Some(linear) = targets.linear(side) {
             own.push(("linear_out", view_of(linear)));
+        }
+        if let Some(means) = &targets.means {
+            own.extend([("shown_before", view_of(&means[1 - side].shown)), ("shown_out", view_of(&means[side].shown))]);
+            own.extend(targets.linear(1 - side).map(|before| ("linear_before", view_of(before))));
         }
         let bound = self.bound(&own);
         let extent = Extent::image(targets.size());

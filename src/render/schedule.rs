@@ -59,7 +59,7 @@ impl Renderer {
             cloud = Some(&history[side]);
         }
         passes.sunshafts(cloud)?;
-        passes.finish(cloud, display)?;
+        passes.finish(cloud, display, 0)?;
 
         jobs.append(&mut passes.jobs);
         let history = plan.temporal.map(|_| History { key, eye, time_secs: frame.time_secs, phase, side });
@@ -177,9 +177,12 @@ pub(super) fn view_uniforms(
         update_block: UVec2::from_array(block),
         update_offset: UVec2::from_array(offset),
         jitter: Vec2::new(1.0, 0.0),
+        pixel_point: Vec2::splat(0.5),
         update_checkerboard: u32::from(is_checkerboard),
         pixel_angle,
         star_radiance: 0.03 / lighting.candela_per_unit,
+        sample_share: 1.0,
+        sample_angle: pixel_angle,
         pad0: 0.0,
         pad1: 0.0,
         pad2: 0.0,

@@ -11,7 +11,7 @@ use crate::gpu::ShaderTable;
 pub const TABLE: ShaderTable = ShaderTable {
     flags: &[
         "AIR", "ALONE", "BELOW", "CLOUDS", "COUNT", "CURL", "DETAIL", "EARTH", "FLOAT", "FRONT", "GROUND", "HISTORY",
-        "OPEN", "PATHS", "PROFILE", "SHADOW", "SHAFTS", "SKIP", "STARS", "TERRAIN", "THESIS", "UNIFORM",
+        "OPEN", "PATHS", "PROFILE", "SAMPLES", "SHADOW", "SHAFTS", "SKIP", "STARS", "TERRAIN", "THESIS", "UNIFORM",
     ],
     structs: &[
         AirUniforms::GENERATED,

@@ -1,11 +1,12 @@
-//! A whole picture beside the frames of a window, every pixel marched afresh. It has targets of its own, so that the
-//! window's frames keep their history, and runs job by job, so that panels stay quick.
+//! A whole picture beside the frames of a window, every pixel marched afresh and several times. It has targets of its own,
+//! so that the window's frames keep their history, and runs job by job, so that panels stay quick.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use super::context::Context;
 use super::passes::{FrameBuffers, Passes};
+use super::samples::PixelSamples;
 use super::schedule::{frame_buffers, view_uniforms};
 use super::targets::Targets;
 use super::truth::{self, TruthPicture};
@@ -23,7 +24,13 @@ pub(super) const JOB_MS: f64 = 20.0;
 pub struct Still {
     targets: Targets,
     candela_per_unit: f32,
+    samples: PixelSamples,
+    /// What each sample takes up to its light, and from there into either mean.
+    each: Vec<Job>,
+    finish: [Vec<Job>; 2],
+    /// What is left of the present one.
     jobs: VecDeque<Job>,
+    finished: u32,
     times: Vec<PassTime>,
     source: TimingSource,
 }
@@ -32,17 +39,23 @@ pub struct Still {
 pub(super) struct Apart {
     pub(super) targets: Targets,
     pub(super) buffers: FrameBuffers,
+    pub(super) samples: PixelSamples,
     pub(super) candela_per_unit: f32,
 }
 
 impl Renderer {
-    /// Whether [`Self::begin_still`] ([`Integrator::Realtime`]) or [`Self::begin_truth`] finds its shaders ready. Those
-    /// that are not are compiled on other threads.
+    /// Whether [`Self::begin_still`] ([`Integrator::Realtime`]) or [`Self::begin_truth`] finds its shaders ready, with so
+    /// many samples of each pixel. Those that are not are compiled on other threads.
     ///
     /// # Errors
     /// [`RenderError::Gpu`] if a shader does not compile.
-    pub fn truth_is_ready(&self, frame: &Frame<'_>, integrator: Integrator) -> Result<bool, RenderError> {
-        let plan = FramePlan::for_truth(frame, integrator);
+    pub fn still_is_ready(
+        &self,
+        frame: &Frame<'_>,
+        integrator: Integrator,
+        pixel_samples: u32,
+    ) -> Result<bool, RenderError> {
+        let plan = FramePlan::for_still(frame, integrator, pixel_samples);
         let mut is_ready = true;
         for key in super::programs(&plan).iter().chain(&truth::programs_of(&plan, integrator)) {
             is_ready &= self.programs.ready_or_start(key)?;
@@ -50,26 +63,38 @@ impl Renderer {
         Ok(is_ready)
     }
 
-    /// Starts a still of the frame. Its output should be one for a file, so that it can be measured.
+    /// Starts a still of the frame with so many samples of each pixel. If it is to be measured, its output has to be one
+    /// for a file.
     ///
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
-    pub fn begin_still(&mut self, frame: &Frame<'_>) -> Result<Still, RenderError> {
-        let plan = FramePlan::for_truth(frame, Integrator::Realtime);
-        let Apart { targets, buffers, candela_per_unit } = self.begin_apart(frame, &plan)?;
+    pub fn begin_still(&mut self, frame: &Frame<'_>, pixel_samples: u32) -> Result<Still, RenderError> {
+        let plan = FramePlan::for_still(frame, Integrator::Realtime, pixel_samples);
+        let Apart { targets, buffers, samples, candela_per_unit } = self.begin_apart(frame, &plan)?;
         let context = self.context_apart();
         let shared = self.shared_resources();
         let mut passes =
             Passes { context: &context, plan: &plan, targets: &targets, shared, buffers: &buffers, jobs: Vec::new() };
         passes.cloud_shadow()?;
+        let first = std::mem::take(&mut passes.jobs);
         passes.background()?;
-        let cloud = passes.march(None)?;
-        let cloud = cloud.map(|marched| &marched.light);
+        let cloud = passes.march(None)?.map(|marched| &marched.light);
         passes.sunshafts(cloud)?;
-        passes.finish(cloud, &targets.display[0])?;
-        let jobs = std::mem::take(&mut passes.jobs).into();
-        let source = TimingSource::of(&self.gpu);
-        Ok(Still { targets, candela_per_unit, jobs, times: Vec::new(), source })
+        let each = std::mem::take(&mut passes.jobs);
+        let finish = passes.finish_into_either(cloud)?;
+        let jobs = first.iter().chain(&each).chain(&finish[0]).cloned().collect();
+        let (source, times) = (TimingSource::of(&self.gpu), Vec::new());
+        Ok(Still { targets, candela_per_unit, samples, each, finish, jobs, finished: 0, times, source })
+    }
+
+    /// A finished still, with as many samples of each pixel as the frame's quality says.
+    ///
+    /// # Errors
+    /// [`RenderError`] as for [`Self::render`].
+    pub fn still(&mut self, frame: &Frame<'_>) -> Result<Still, RenderError> {
+        let mut still = self.begin_still(frame, frame.quality.pixel_samples)?;
+        still.advance(self, Duration::MAX)?;
+        Ok(still)
     }
 
     /// Makes what a picture beside the window's frames reads, and the targets and buffers of its own.
@@ -83,7 +108,8 @@ impl Renderer {
         let (targets, _) = Targets::fitting(None, &self.gpu, plan, frame.render_size())?;
         let view = view_uniforms(frame, plan, &eye, None, &lighting);
         let buffers = frame_buffers(&self.context_apart(), frame, plan, &view);
-        Ok(Apart { targets, buffers, candela_per_unit: lighting.candela_per_unit })
+        let samples = PixelSamples::new(&self.gpu, &view, &buffers.view, plan.pixel_samples);
+        Ok(Apart { targets, buffers, samples, candela_per_unit: lighting.candela_per_unit })
     }
 
     /// What its passes are given: jobs short enough for the panels beside it.
@@ -103,6 +129,13 @@ impl Still {
             for time in job::run(&renderer.gpu, std::slice::from_ref(&next))? {
                 job::add(&mut self.times, time.pass, time.millis);
             }
+            if self.jobs.is_empty() {
+                self.finished += 1;
+                if self.samples.next(&renderer.gpu) {
+                    let finish = &self.finish[self.samples.side()];
+                    self.jobs.extend(self.each.iter().chain(finish).cloned());
+                }
+            }
             if started.elapsed() >= budget {
                 break;
             }
@@ -110,9 +143,20 @@ impl Still {
         Ok(self.jobs.is_empty())
     }
 
-    /// The picture as it is shown, once it is finished: `Rgba8Unorm`, display-encoded.
+    /// Samples of each pixel that are finished, and how many there will be.
+    pub fn pixel_samples(&self) -> (u32, u32) {
+        (self.finished, self.samples.count())
+    }
+
+    /// The picture as it is shown, once a sample of each pixel is finished: `Rgba8Unorm`, display-encoded.
     pub fn display(&self) -> Option<&Texture> {
-        self.jobs.is_empty().then_some(&self.targets.display[0])
+        (self.finished > 0).then_some(&self.targets.display[0])
+    }
+
+    /// The same, with everything else let go.
+    pub fn into_display(self) -> Texture {
+        let [display, _] = self.targets.display;
+        display
     }
 
     /// What the passes took together, in milliseconds; `None` where a pass could not be timed, or before the end.
@@ -136,7 +180,7 @@ impl Still {
     /// # Errors
     /// [`RenderError::Gpu`] if the device fails.
     pub fn picture(&self, renderer: &Renderer) -> Result<TruthPicture, RenderError> {
-        read_back(&self.targets, renderer, self.candela_per_unit)
+        read_back(&self.targets, renderer, (self.samples.side(), self.candela_per_unit))
     }
 }
 
@@ -144,10 +188,10 @@ impl Still {
 pub(super) fn read_back(
     targets: &Targets,
     renderer: &Renderer,
-    candela_per_unit: f32,
+    (side, candela_per_unit): (usize, f32),
 ) -> Result<TruthPicture, RenderError> {
     let gpu = &renderer.gpu;
-    let rgba = match &targets.linear {
+    let rgba = match targets.linear(side) {
         Some(linear) => readback::rgba(gpu, linear)?,
         None => Vec::new(),
     };

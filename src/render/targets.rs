@@ -16,6 +16,7 @@ struct Shape {
     ground: bool,
     shafts: bool,
     shadow_px: Option<u32>,
+    samples: bool,
 }
 
 /// Clouds at the resolution of rays or of pixels: light and transmittance, and mean distance.
@@ -23,6 +24,15 @@ struct Shape {
 pub(super) struct CloudTarget {
     pub(super) light: Texture,
     pub(super) distance: Texture,
+}
+
+/// The mean of the samples so far.
+#[derive(Debug)]
+pub(super) struct Mean {
+    /// Display light: after the tone map, linear.
+    pub(super) shown: Texture,
+    /// Light for a file.
+    pub(super) linear: Option<Texture>,
 }
 
 /// All targets of one size.
@@ -37,7 +47,10 @@ pub(super) struct Targets {
     /// Full pictures that take turns as history and as result: light and transmittance.
     pub(super) history: Option<[Texture; 2]>,
     pub(super) shafts: Option<[Texture; 2]>,
-    pub(super) linear: Option<Texture>,
+    /// Light for a file, where pixels have a single sample.
+    linear: Option<Texture>,
+    /// Where they have several: the mean before, and after.
+    pub(super) means: Option<[Mean; 2]>,
     /// Finished pictures: one is shown while the other is made.
     pub(super) display: [Texture; 2],
 }
@@ -65,6 +78,7 @@ impl Targets {
             ground: plan.ground.is_some(),
             shafts: plan.sunshafts.is_some(),
             shadow_px: plan.ground.and_then(|ground| ground.shadow_px),
+            samples: plan.pixel_samples > 1,
         };
         match kept {
             Some(kept) if kept.shape == shape => Ok((kept, false)),
@@ -81,6 +95,10 @@ impl Targets {
             Ok(CloudTarget { light: image(label, size, format)?, distance: image(label, size, distance)? })
         };
         let display = |label: &str| image(label, size, wgpu::TextureFormat::Rgba8Unorm);
+        let linear = || float.then(|| image("linear", size, wgpu::TextureFormat::Rgba32Float)).transpose();
+        let mean = || -> Result<Mean, GpuError> {
+            Ok(Mean { shown: image("mean", size, wgpu::TextureFormat::Rgba16Float)?, linear: linear()? })
+        };
         let shaft_size = size.map(|side| side.div_ceil(4));
         let shaft = |label: &str| image(label, shaft_size, wgpu::TextureFormat::Rgba16Float);
         Ok(Self {
@@ -95,9 +113,15 @@ impl Targets {
                 None
             },
             shafts: if shape.shafts { Some([shaft("shafts_mask")?, shaft("shafts")?]) } else { None },
-            linear: float.then(|| image("linear", size, wgpu::TextureFormat::Rgba32Float)).transpose()?,
+            linear: if shape.samples { None } else { linear()? },
+            means: if shape.samples { Some([mean()?, mean()?]) } else { None },
             display: [display("display")?, display("display")?],
         })
+    }
+
+    /// Light for a file: that of the one sample, or the mean on this side.
+    pub(super) fn linear(&self, side: usize) -> Option<&Texture> {
+        self.means.as_ref().map_or(self.linear.as_ref(), |means| means[side].linear.as_ref())
     }
 
     /// Size of the picture.
@@ -111,7 +135,14 @@ impl Targets {
         let clouds = marched + self.history.iter().flatten().map(Texture::bytes).sum::<u64>();
         let single = [self.ground_distance.as_ref(), self.cloud_shadow.as_ref(), self.linear.as_ref()];
         let single: u64 = single.into_iter().flatten().map(Texture::bytes).sum();
+        let means = self.means.iter().flatten().flat_map(|mean| [Some(&mean.shown), mean.linear.as_ref()]);
+        let means: u64 = means.flatten().map(Texture::bytes).sum();
         let shafts: u64 = self.shafts.iter().flatten().map(Texture::bytes).sum();
-        clouds + single + shafts + self.background.bytes() + self.display.iter().map(Texture::bytes).sum::<u64>()
+        clouds
+            + single
+            + shafts
+            + means
+            + self.background.bytes()
+            + self.display.iter().map(Texture::bytes).sum::<u64>()
     }
 }

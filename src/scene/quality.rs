@@ -77,6 +77,8 @@ params! {
         update: UpdateFraction = UpdateFraction::Sixteenth;
         /// Order in which pixels take their turn.
         update_order: UpdateOrder = UpdateOrder::Cross;
+        /// Samples of each pixel in a still, and in the window at rest. A picture that moves has one.
+        pixel_samples: u32 = 4, 1..=64, None;
         /// Resolution of the picture relative to its frame.
         resolution_scale: f32 = 1.0, 0.1..=2.0, None;
         /// Edge length of the map of cloud shadows on the ground.
@@ -98,6 +100,7 @@ impl Quality {
                 light_steps: 4,
                 light_detail_steps: 0,
                 octaves: 4,
+                pixel_samples: 1,
                 resolution_scale: 0.75,
                 shadow_map_px: 128,
                 ..Self::default()
@@ -133,6 +136,7 @@ impl Quality {
                 early_exit: 0.001,
                 detail_distance_m: 200_000.0,
                 update: UpdateFraction::Full,
+                pixel_samples: 8,
                 shadow_map_px: 512,
                 shaft_samples: 64,
                 ..Self::default()

@@ -32,6 +32,8 @@ pub struct Refined {
     pub integrator: Integrator,
     /// Level of the ladder or samples of each pixel that are finished, shown or not; `None` before the first.
     pub finished: Option<u32>,
+    /// Samples of each pixel on the last level: finished, and in the end.
+    pub pixel_samples: (u32, u32),
     /// Share of the level or of all samples under way, 0 to 1.
     pub share: f32,
     /// Relative change of the last level, or relative standard error; 0.01 is one per cent. `None` before it is known.
@@ -48,6 +50,13 @@ pub enum Refinement {
     Idle,
     /// Shaders are being compiled.
     Compiling,
+    /// The realtime picture gets several samples of each pixel.
+    Smoothing {
+        /// How many are finished.
+        finished: u32,
+        /// How many there will be.
+        count: u32,
+    },
     /// The realtime picture of all pixels is being made.
     Still,
     /// A truth is on its way.
@@ -81,6 +90,10 @@ impl Refined {
                 let error = error.map_or_else(String::new, |error| format!(", noise {error}"));
                 format!("{} paths a pixel, {:.0} % of more{error}", self.finished.unwrap_or(0), self.share * 100.0)
             }
+            _ if self.pixel_samples.0 > 0 => {
+                let (finished, count) = self.pixel_samples;
+                format!("sample {} of {count} a pixel, {:.0} %", (finished + 1).min(count), self.share * 100.0)
+            }
             _ => {
                 let level = self.finished.map_or(0, |finished| finished + 1);
                 let error = error.map_or_else(String::new, |error| format!(", changed {error} last"));
@@ -107,6 +120,9 @@ impl Refinement {
         match self {
             Self::Idle => None,
             Self::Compiling => Some("refining: compiling shaders".to_owned()),
+            Self::Smoothing { finished, count } => {
+                Some(format!("smoothing: sample {} of {count} a pixel", (finished + 1).min(count)))
+            }
             Self::Still => Some("comparing: realtime picture of all pixels".to_owned()),
             Self::Working(refined) => Some(format!("refining: {}", refined.way())),
             Self::Halted(refined) => Some(format!("halted: {}", refined.way())),
@@ -180,7 +196,7 @@ impl Figures {
 pub struct TruthView {
     /// What is being done.
     pub refinement: Refinement,
-    /// The converged picture, which the viewport shows at rest.
+    /// What the viewport shows at rest: smooth, then converged as well.
     pub refined: Option<Picture>,
     /// The realtime picture of all pixels.
     pub still: Option<Picture>,
@@ -402,7 +418,14 @@ mod tests {
     use super::*;
 
     fn refined(integrator: Integrator) -> Refined {
-        Refined { integrator, finished: Some(1), share: 0.4, error: Some(0.013), spent_secs: 12.2 }
+        Refined {
+            integrator,
+            finished: Some(1),
+            pixel_samples: (0, 1),
+            share: 0.4,
+            error: Some(0.013),
+            spent_secs: 12.2,
+        }
     }
 
     #[test]

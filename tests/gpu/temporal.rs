@@ -263,11 +263,11 @@ fn a_truth_between_two_frames_leaves_their_history_alone() {
             show(&mut renderer, &scene, &quality, size);
         }
         if with_truth {
-            let mut still = renderer.begin_still(&whole).expect("the still begins");
+            let mut still = renderer.begin_still(&whole, 1).expect("the still begins");
             while !still.advance(&renderer, Duration::from_secs(1)).expect("it goes on") {}
             assert!(still.total_ms().is_some_and(|millis| millis > 0.0), "it was timed");
             let goal = Goal::Converged { tolerance: 0.01, levels: 2 };
-            let mut truth = renderer.begin_truth(&whole, goal).expect("the truth begins");
+            let mut truth = renderer.begin_truth(&whole, goal, 1).expect("the truth begins");
             assert!(truth.display().is_none(), "nothing is finished yet");
             let slice = Duration::from_millis(5);
             while truth.display().is_none() {

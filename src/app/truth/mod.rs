@@ -1,5 +1,6 @@
 //! Pictures that converge, beside the window's own: when they are worked on, and what is kept of them.
 
+mod at_rest;
 mod compare;
 mod schedule;
 
@@ -15,6 +16,7 @@ use crate::render::truth::{Convergence, Goal, Truth};
 use crate::render::{RenderError, Renderer, Still};
 use crate::scene::{Frame, Output, Quality, UpdateFraction};
 use crate::ui::{Figures, Picture, Refined, Refinement};
+use at_rest::{AtRest, Worked};
 use compare::Linear;
 use schedule::Schedule;
 
@@ -52,6 +54,9 @@ struct Kept {
 /// All that belongs to one moment of the scene.
 #[derive(Debug, Default)]
 struct Moment {
+    /// What is shown at rest.
+    at_rest: AtRest,
+    /// What is compared.
     still: Option<Still>,
     converged: Option<Kept>,
     traced: Option<Kept>,
@@ -116,6 +121,10 @@ impl Truths {
         self.generation += 1;
         self.is_comparing = false;
         self.schedule.restart(now);
+        if self.quality.pixel_samples == 1 {
+            // The window's own frame is that picture.
+            self.schedule.finished(Task::Smooth);
+        }
         self.state = State::Idle;
         true
     }
@@ -153,30 +162,14 @@ impl Truths {
             return Ok(Outcome { wake: Some(Instant::now() + COMPILE_POLL), has_worked: true, has_picture: false });
         }
         self.state = State::At(task);
-        let mut has_picture = false;
-        match task {
-            Task::Still => {
-                if let Some(still) = &mut self.moment.still
-                    && still.advance(renderer, SLICE)?
-                {
-                    has_picture = true;
-                    self.moment.figures.cost_ms = still.total_ms();
-                    self.moment.figures.source = still.source().label();
-                    self.schedule.finished(task);
-                }
-            }
-            Task::Truth(integrator) => {
-                if let Some(kept) = self.moment.kept_mut(integrator) {
-                    // Half a slice: what is begun before it is over runs for a whole one.
-                    let progress = kept.truth.advance(renderer, SLICE / 2, SLICE)?;
-                    let finished = kept.truth.display().and(progress.finished);
-                    has_picture = finished != kept.finished;
-                    kept.finished = finished;
-                    if progress.is_done {
-                        self.schedule.finished(task);
-                    }
-                }
-            }
+        let Worked { is_done, has_picture } = match task {
+            Task::Smooth => self.moment.at_rest.work_on_smooth(renderer)?,
+            Task::Converged => self.moment.at_rest.work_on_converged(renderer)?,
+            Task::Still => self.moment.work_on_still(renderer)?,
+            Task::Truth(integrator) => self.moment.work_on_truth(integrator, renderer)?,
+        };
+        if is_done {
+            self.schedule.finished(task);
         }
         Ok(Outcome { wake: Some(Instant::now()), has_worked: true, has_picture })
     }
@@ -189,22 +182,28 @@ impl Truths {
             quality: &self.quality,
             size: inputs.size,
             time_secs: inputs.time_secs,
-            output: Output::Linear,
+            output: if task.is_measured() { Output::Linear } else { Output::Display },
         };
         let (is_there, integrator) = match task {
+            Task::Smooth => (self.moment.at_rest.has_begun_smooth(), Integrator::Realtime),
+            Task::Converged => (self.moment.at_rest.has_begun_converged(), Integrator::Converged),
             Task::Still => (self.moment.still.is_some(), Integrator::Realtime),
             Task::Truth(integrator) => (self.moment.kept(integrator).is_some(), integrator),
         };
         if is_there {
             return Ok(true);
         }
-        if !renderer.truth_is_ready(&frame, integrator)? {
+        // What is measured looks through the middle of each pixel, as the frames of a flight do.
+        let pixel_samples = if task.is_measured() { 1 } else { self.quality.pixel_samples };
+        if !renderer.still_is_ready(&frame, integrator, pixel_samples)? {
             return Ok(false);
         }
         match task {
-            Task::Still => self.moment.still = Some(renderer.begin_still(&frame)?),
+            Task::Smooth => self.moment.at_rest.begin_smooth(renderer, &frame)?,
+            Task::Converged => self.moment.at_rest.begin_converged(renderer, &frame)?,
+            Task::Still => self.moment.still = Some(renderer.begin_still(&frame, pixel_samples)?),
             Task::Truth(_) => {
-                let truth = renderer.begin_truth(&frame, goal(integrator))?;
+                let truth = renderer.begin_truth(&frame, goal(integrator), pixel_samples)?;
                 *self.moment.slot(integrator) = Some(Kept { truth, finished: None, compared: None });
             }
         }
@@ -230,7 +229,7 @@ impl Truths {
         let (scene, size) = (inputs.scene.clone(), inputs.size);
         let Some(kept) = self.moment.kept_mut(integrator) else { return Ok(None) };
         kept.compared = kept.finished;
-        let truth = kept.truth.finished_picture(renderer)?;
+        let truth = kept.truth.picture(renderer)?;
         self.is_comparing = true;
         Ok(Some(CompareJob { generation: self.generation, integrator, scene, size, still: linear, truth }))
     }
@@ -250,6 +249,11 @@ impl Truths {
         }
         let figures = &mut self.moment.figures;
         *(if traced { &mut figures.traced } else { &mut figures.converged }) = Some(compared.errors);
+    }
+
+    /// The picture at rest, once there is one that is better than the window's frame.
+    pub(super) fn at_rest(&self) -> Option<&Texture> {
+        self.moment.at_rest.display()
     }
 
     /// The picture of a truth, once there is one.
@@ -279,40 +283,81 @@ impl Truths {
 
     /// What is said of the work.
     pub(super) fn refinement(&self, wishes: Wishes) -> Refinement {
-        let reference = wishes.compare.unwrap_or(Integrator::Converged);
-        match self.state {
-            State::Compiling => Refinement::Compiling,
-            State::At(Task::Still) => Refinement::Still,
-            State::At(Task::Truth(integrator)) => match self.moment.kept(integrator) {
-                Some(kept) => Refinement::Working(refined(kept)),
-                None => Refinement::Compiling,
-            },
-            State::Idle => match self.moment.kept(reference) {
-                None => Refinement::Idle,
-                Some(kept) if kept.truth.plan().march.is_none() => Refinement::NoCloud,
-                Some(kept) if kept.truth.progress().is_done => {
-                    let is_within = kept.truth.progress().error.is_some_and(|error| error <= TOLERANCE);
-                    Refinement::Done(refined(kept), is_within)
+        let at_rest = &self.moment.at_rest;
+        let (integrator, progress, has_cloud) = match wishes.compare {
+            None => (Integrator::Converged, at_rest.progress(), at_rest.has_cloud()),
+            Some(reference) => {
+                let kept = self.moment.kept(reference);
+                let has_cloud = kept.is_some_and(|kept| kept.truth.plan().march.is_some());
+                (reference, kept.map(|kept| kept.truth.progress()), has_cloud)
+            }
+        };
+        match (self.state, progress) {
+            (State::Compiling, _) => Refinement::Compiling,
+            (State::At(Task::Smooth), _) => {
+                let (finished, count) = at_rest.smooth_samples();
+                Refinement::Smoothing { finished, count }
+            }
+            (State::At(Task::Still), _) => Refinement::Still,
+            (State::At(_), None) => Refinement::Compiling,
+            (State::Idle, None) => Refinement::Idle,
+            (_, Some(progress)) => {
+                let pixel_samples = match wishes.compare {
+                    None => (progress.pixel_samples, self.quality.pixel_samples),
+                    Some(_) => (progress.pixel_samples, 1),
+                };
+                let refined = refined(integrator, pixel_samples, &progress);
+                if matches!(self.state, State::At(_)) {
+                    Refinement::Working(refined)
+                } else if !progress.is_done {
+                    Refinement::Halted(refined)
+                } else if has_cloud {
+                    let is_within = progress.error.is_some_and(|error| error <= TOLERANCE);
+                    Refinement::Done(refined, is_within)
+                } else {
+                    Refinement::NoCloud
                 }
-                Some(kept) => Refinement::Halted(refined(kept)),
-            },
+            }
         }
     }
 
     /// Faults that the shaders counted, in words.
     pub(super) fn faults(&self) -> Vec<String> {
         let kept = [&self.moment.converged, &self.moment.traced].into_iter().flatten();
-        kept.flat_map(|kept| faults(kept.truth.integrator(), &kept.truth.progress())).collect()
+        let compared = kept.map(|kept| (kept.truth.integrator(), kept.truth.progress()));
+        let at_rest = self.moment.at_rest.progress().map(|progress| (Integrator::Converged, progress));
+        compared.chain(at_rest).flat_map(|(integrator, progress)| faults(integrator, &progress)).collect()
     }
 
     /// Device memory held, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let kept = [&self.moment.converged, &self.moment.traced].into_iter().flatten();
-        kept.map(|kept| kept.truth.bytes()).sum::<u64>() + self.moment.still.as_ref().map_or(0, Still::bytes)
+        let compared = kept.map(|kept| kept.truth.bytes()).sum::<u64>();
+        self.moment.at_rest.bytes() + compared + self.moment.still.as_ref().map_or(0, Still::bytes)
     }
 }
 
 impl Moment {
+    fn work_on_still(&mut self, renderer: &Renderer) -> Result<Worked, RenderError> {
+        let Some(still) = &mut self.still else { return Ok(Worked::default()) };
+        let is_done = still.advance(renderer, SLICE)?;
+        if is_done {
+            self.figures.cost_ms = still.total_ms();
+            self.figures.source = still.source().label();
+        }
+        Ok(Worked { is_done, has_picture: is_done })
+    }
+
+    fn work_on_truth(&mut self, integrator: Integrator, renderer: &Renderer) -> Result<Worked, RenderError> {
+        let Some(kept) = self.kept_mut(integrator) else { return Ok(Worked::default()) };
+        // Half a slice: what is begun before it is over runs for a whole one.
+        let progress = kept.truth.advance(renderer, SLICE / 2, SLICE)?;
+        let finished = kept.truth.display().and(progress.finished);
+        let has_picture = finished != kept.finished;
+        kept.finished = finished;
+        Ok(Worked { is_done: progress.is_done, has_picture })
+    }
+
     fn slot(&mut self, integrator: Integrator) -> &mut Option<Kept> {
         if integrator == Integrator::PathTraced { &mut self.traced } else { &mut self.converged }
     }
@@ -333,11 +378,11 @@ fn goal(integrator: Integrator) -> Goal {
     }
 }
 
-fn refined(kept: &Kept) -> Refined {
-    let Convergence { finished, share, error, spent_secs, .. } = kept.truth.progress();
+fn refined(integrator: Integrator, pixel_samples: (u32, u32), progress: &Convergence) -> Refined {
+    let Convergence { finished, share, error, spent_secs, .. } = *progress;
     // A broken pixel must not make a status that differs from itself.
     let error = error.filter(|error| error.is_finite());
-    Refined { integrator: kept.truth.integrator(), finished, share, error, spent_secs }
+    Refined { integrator, finished, pixel_samples, share, error, spent_secs }
 }
 
 /// What a count that should be 0 means.
@@ -365,6 +410,7 @@ mod tests {
             is_done: false,
             share: 0.0,
             finished: None,
+            pixel_samples: 0,
             error: None,
             counts: TruthCounts { steps: 5, light_steps: 5, exceeded, cut },
             spent_secs: 0.0,

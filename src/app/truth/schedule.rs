@@ -11,10 +11,21 @@ const QUIET: Duration = Duration::from_millis(500);
 /// One piece of work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Task {
-    /// The realtime picture of all pixels.
+    /// The realtime picture with several samples of each pixel.
+    Smooth,
+    /// The same, converged.
+    Converged,
+    /// The realtime picture of all pixels, to compare.
     Still,
-    /// A truth.
+    /// A truth to compare it with.
     Truth(Integrator),
+}
+
+impl Task {
+    /// Whether its light is measured, rather than shown alone.
+    pub(super) fn is_measured(self) -> bool {
+        matches!(self, Self::Still | Self::Truth(_))
+    }
 }
 
 /// What the user wants.
@@ -82,11 +93,13 @@ impl Schedule {
     }
 
     fn next(&self, wishes: Wishes) -> Option<Task> {
-        let still = wishes.compare.map(|_| Task::Still);
-        let compared = wishes.compare.map(Task::Truth);
-        let refined = wishes.refines.then_some(Task::Truth(Integrator::Converged));
-        let truths = compared.into_iter().chain(refined).filter(|_| !wishes.is_kept);
-        still.into_iter().chain(truths).find(|task| !self.finished.contains(task))
+        let tasks = match wishes.compare {
+            Some(_) if wishes.is_kept => [Some(Task::Still), None],
+            Some(reference) => [Some(Task::Still), Some(Task::Truth(reference))],
+            None if wishes.refines && !wishes.is_kept => [Some(Task::Smooth), Some(Task::Converged)],
+            None => [None, None],
+        };
+        tasks.into_iter().flatten().find(|task| !self.finished.contains(task))
     }
 }
 
@@ -94,7 +107,6 @@ impl Schedule {
 mod tests {
     use super::*;
 
-    const CONVERGED: Task = Task::Truth(Integrator::Converged);
     const TRACED: Task = Task::Truth(Integrator::PathTraced);
     const REFINES: Wishes = Wishes { refines: true, compare: None, is_kept: false, moves: false };
 
@@ -107,11 +119,13 @@ mod tests {
         let start = Instant::now();
         let mut schedule = Schedule::new(start);
         assert_eq!(schedule.turn(after(start, 400), REFINES), Turn::WaitUntil(after(start, 500)), "not yet at rest");
-        assert_eq!(schedule.turn(after(start, 500), REFINES), Turn::Work(CONVERGED));
+        assert_eq!(schedule.turn(after(start, 500), REFINES), Turn::Work(Task::Smooth));
+        schedule.finished(Task::Smooth);
+        assert_eq!(schedule.turn(after(start, 600), REFINES), Turn::Work(Task::Converged));
         schedule.touch(after(start, 700));
         assert_eq!(schedule.turn(after(start, 700), REFINES), Turn::WaitUntil(after(start, 1200)), "suspended at once");
-        assert_eq!(schedule.turn(after(start, 1200), REFINES), Turn::Work(CONVERGED), "and taken up again");
-        schedule.finished(CONVERGED);
+        assert_eq!(schedule.turn(after(start, 1200), REFINES), Turn::Work(Task::Converged), "and taken up again");
+        schedule.finished(Task::Converged);
         assert_eq!(schedule.turn(after(start, 1300), REFINES), Turn::Rest, "within tolerance: no work, no wake-up");
         schedule.touch(after(start, 2000));
         assert_eq!(schedule.turn(after(start, 9000), REFINES), Turn::Rest, "a mouse that moves begins nothing");
@@ -121,10 +135,10 @@ mod tests {
     fn an_edit_begins_anew() {
         let start = Instant::now();
         let mut schedule = Schedule::new(start);
-        schedule.finished(CONVERGED);
+        schedule.finished(Task::Smooth);
         schedule.restart(after(start, 1000));
         assert_eq!(schedule.turn(after(start, 1001), REFINES), Turn::WaitUntil(after(start, 1500)));
-        assert_eq!(schedule.turn(after(start, 1500), REFINES), Turn::Work(CONVERGED));
+        assert_eq!(schedule.turn(after(start, 1500), REFINES), Turn::Work(Task::Smooth));
     }
 
     #[test]
@@ -146,7 +160,8 @@ mod tests {
         assert_eq!(schedule.turn(now, wishes), Turn::Work(TRACED));
         schedule.finished(TRACED);
         assert_eq!(schedule.turn(now, wishes), Turn::Rest);
-        assert_eq!(schedule.turn(now, Wishes { refines: true, ..wishes }), Turn::Work(CONVERGED));
+        assert_eq!(schedule.turn(now, Wishes { refines: true, ..wishes }), Turn::Rest, "what nobody sees waits");
+        assert_eq!(schedule.turn(now, REFINES), Turn::Work(Task::Smooth));
     }
 
     #[test]
@@ -156,7 +171,7 @@ mod tests {
         let now = after(start, 900);
         let kept = Wishes { is_kept: true, ..REFINES };
         assert_eq!(schedule.turn(now, kept), Turn::Rest);
-        assert_eq!(schedule.turn(now, REFINES), Turn::Work(CONVERGED), "and goes on afterwards");
+        assert_eq!(schedule.turn(now, REFINES), Turn::Work(Task::Smooth), "and goes on afterwards");
         let compared = Wishes { compare: Some(Integrator::Converged), ..kept };
         assert_eq!(schedule.turn(now, compared), Turn::Work(Task::Still), "there must be something to compare");
     }

@@ -101,13 +101,14 @@ impl Live {
         let reference = session.ui.truth.reference;
         let truths = &self.viewport.truths;
         let mut set = |place, texture| self.egui.set_picture(&self.gpu, place, texture);
+        let at_rest = set(Place::AtRest, truths.at_rest());
         let converged = set(Place::Converged, truths.display(Integrator::Converged));
         let traced = set(Place::Traced, truths.display(Integrator::PathTraced));
         let still = set(Place::Still, truths.still());
         let (difference, limit) = truths.difference(reference).unzip();
         session.ui.truth.view = TruthView {
             refinement: truths.refinement(wishes),
-            refined: converged,
+            refined: at_rest,
             still,
             truth: if reference == Integrator::PathTraced { traced } else { converged },
             difference,
@@ -117,10 +118,10 @@ impl Live {
         };
     }
 
-    /// The picture as the window shows it, for a file: the refined one at rest, else the last frame.
+    /// The picture as the window shows it, for a file: the one at rest, else the last frame.
     pub(super) fn shown_rgba8(&self, session: &Session) -> Result<([u32; 2], Vec<u8>), RenderError> {
-        let refined = self.viewport.truths.display(Integrator::Converged);
-        match refined.filter(|_| !session.ui.truth.compares()) {
+        let at_rest = self.viewport.truths.at_rest();
+        match at_rest.filter(|_| !session.ui.truth.compares()) {
             Some(texture) => self.viewport.renderer().rgba8_of(texture),
             None => self.viewport.renderer().display_rgba8(),
         }

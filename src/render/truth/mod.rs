@@ -1,7 +1,7 @@
 //! Pictures that converge: the same frame by a reference integrator, refined until it is good enough.
 //!
 //! A [`Truth`] holds what is kept between dispatches and works in slices, each bounded in time: [`Truth::advance`] takes
-//! as many as fit a budget, [`Truth::picture`] shows how far it is. It has targets and buffers of its own, so that the
+//! as many as fit a budget, [`Truth::display`] shows how far it is. It has targets and buffers of its own, so that the
 //! frames beside it keep their history.
 //!
 //! [`Integrator::Converged`] goes up a ladder: each level has half the steps of the one before, and the change between
@@ -16,6 +16,7 @@ use std::time::{Duration, Instant};
 
 use super::pass::sky::SkyInputs;
 use super::passes::{FrameBuffers, Passes, field_key, view_of};
+use super::samples::PixelSamples;
 use super::still::{Apart, read_back};
 use super::targets::Targets;
 use super::uniforms;
@@ -49,10 +50,12 @@ pub struct TruthCounts {
 pub struct Convergence {
     /// Whether it has reached its goal, or cannot get nearer.
     pub is_done: bool,
-    /// Share of the work of the present level or of all samples, 0 to 1.
+    /// Share of the work of the present level, of a further sample of each pixel on the last one, or of all paths, 0 to 1.
     pub share: f32,
     /// Level of the ladder, or samples of each pixel, that are finished; `None` before the first.
     pub finished: Option<u32>,
+    /// Samples of each pixel that are finished on the last level; 0 before the end of the ladder.
+    pub pixel_samples: u32,
     /// Estimated relative error of the finished picture, root mean square over pixels with cloud; `None` before the
     /// first estimate.
     pub error: Option<f32>,
@@ -82,52 +85,65 @@ pub struct Truth {
     targets: Targets,
     candela_per_unit: f32,
     tiles: Option<Tiles>,
+    samples: PixelSamples,
     /// Sky, ground and shadows, still to be made.
     prepare: VecDeque<Job>,
-    /// From the buffers to the finished picture.
-    finish: Vec<Job>,
+    /// What of it each sample of the pixels makes anew.
+    each: Vec<Job>,
+    /// From the buffers to the clouds' light, and from there to the finished picture, into either mean.
+    resolve: Vec<Job>,
+    finish: [Vec<Job>; 2],
     variance: Option<Texture>,
     progress: Convergence,
+    has_picture: bool,
     /// The finished picture of the level before.
     before: Option<Vec<[f32; 4]>>,
 }
 
 impl Renderer {
-    /// Starts a frame that converges. Its output should be one for a file: half floats hide small differences.
+    /// Starts a frame that converges, with so many samples of each pixel on the last level of its ladder. If it is to be
+    /// measured, its output has to be one for a file: half floats hide small differences.
     ///
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
-    pub fn begin_truth(&mut self, frame: &Frame<'_>, goal: Goal) -> Result<Truth, RenderError> {
+    pub fn begin_truth(&mut self, frame: &Frame<'_>, goal: Goal, pixel_samples: u32) -> Result<Truth, RenderError> {
         let integrator = goal.integrator();
-        let plan = FramePlan::for_truth(frame, integrator);
-        let Apart { targets, buffers, candela_per_unit } = self.begin_apart(frame, &plan)?;
+        let plan = FramePlan::for_still(frame, integrator, pixel_samples);
+        let Apart { targets, buffers, samples, candela_per_unit } = self.begin_apart(frame, &plan)?;
         let context = self.context_apart();
         let shared = self.shared_resources();
         let mut passes =
             Passes { context: &context, plan: &plan, targets: &targets, shared, buffers: &buffers, jobs: Vec::new() };
         passes.cloud_shadow()?;
+        let mut prepare: VecDeque<Job> = std::mem::take(&mut passes.jobs).into();
         passes.background()?;
-        let prepare = std::mem::take(&mut passes.jobs).into();
+        let each = std::mem::take(&mut passes.jobs);
+        prepare.extend(each.iter().cloned());
         let cloud = targets.marched.as_ref().map(|marched| &marched.light);
         passes.sunshafts(cloud)?;
-        passes.finish(cloud, &targets.display[0])?;
-        let after = std::mem::take(&mut passes.jobs);
+        let resolve = std::mem::take(&mut passes.jobs);
+        let finish = passes.finish_into_either(cloud)?;
         let mut truth = Truth {
             integrator,
             goal,
             candela_per_unit,
             tiles: None,
+            samples,
             prepare,
-            finish: Vec::new(),
+            each,
+            resolve,
+            finish,
             variance: None,
             progress: Convergence {
-                is_done: plan.march.is_none(),
+                is_done: false,
                 share: 0.0,
                 finished: None,
+                pixel_samples: 0,
                 error: None,
                 counts: TruthCounts::default(),
                 spent_secs: 0.0,
             },
+            has_picture: false,
             before: None,
             plan,
             targets,
@@ -136,7 +152,6 @@ impl Renderer {
             let inputs = uniforms::sky_inputs(frame.scene, &Lighting::new(frame.scene));
             self.add_clouds(&mut truth, march, &buffers, &inputs)?;
         }
-        truth.finish.extend(after);
         Ok(truth)
     }
 
@@ -185,7 +200,7 @@ impl Renderer {
         };
         let (tiles, resolve) = Tiles::new(&stage, truth.goal, march)?;
         truth.tiles = Some(tiles);
-        truth.finish.extend(resolve);
+        truth.resolve.splice(0..0, resolve);
         Ok(())
     }
 }
@@ -251,78 +266,85 @@ impl Truth {
     ) -> Result<Convergence, RenderError> {
         let started = Instant::now();
         let gpu = &renderer.gpu;
-        while let Some(next) = self.prepare.pop_front() {
-            job::submit(gpu, &[next]);
-            gpu.wait()?;
-            if started.elapsed() >= budget {
-                self.progress.spent_secs += started.elapsed().as_secs_f64();
-                return Ok(self.progress);
-            }
-        }
         while !self.progress.is_done && started.elapsed() < budget {
-            let Some(tiles) = &mut self.tiles else { break };
-            let is_complete = tiles.run_slice(gpu, slice)?;
-            self.progress.counts = tiles.counts();
-            self.progress.share = tiles.share();
+            if let Some(next) = self.prepare.pop_front() {
+                job::submit(gpu, &[next]);
+                gpu.wait()?;
+                continue;
+            }
+            let is_complete = match &mut self.tiles {
+                Some(tiles) => {
+                    let is_complete = tiles.run_slice(gpu, slice)?;
+                    self.progress.counts = tiles.counts();
+                    self.progress.share = tiles.share();
+                    is_complete
+                }
+                None => true,
+            };
             if is_complete {
-                self.complete_level(renderer)?;
+                self.complete(renderer)?;
             }
         }
         self.progress.spent_secs += started.elapsed().as_secs_f64();
         Ok(self.progress)
     }
 
-    /// Takes stock after a level or a batch of samples, and starts the next.
-    fn complete_level(&mut self, renderer: &Renderer) -> Result<(), RenderError> {
-        let Some(tiles) = &mut self.tiles else { return Ok(()) };
+    /// Takes stock after a level, a batch of paths or a further sample of each pixel, and starts the next.
+    fn complete(&mut self, renderer: &Renderer) -> Result<(), RenderError> {
+        let gpu = &renderer.gpu;
+        job::submit(gpu, &self.resolve);
+        job::submit(gpu, &self.finish[self.samples.side()]);
+        self.has_picture = true;
+        self.progress.share = 0.0;
+        if self.progress.pixel_samples > 0 || self.has_reached_goal(renderer)? {
+            self.before = None;
+            self.progress.pixel_samples += 1;
+            if self.samples.next(gpu) {
+                self.prepare.extend(self.each.iter().cloned());
+                self.tiles.iter_mut().for_each(|tiles| tiles.begin_again(gpu));
+            } else {
+                self.progress.is_done = true;
+                self.progress.share = 1.0;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the level or batch just finished is good enough; if it is not, the next one is begun, unless it was the
+    /// last.
+    fn has_reached_goal(&mut self, renderer: &Renderer) -> Result<bool, RenderError> {
+        let (Some(tiles), Some(cloud)) = (&mut self.tiles, &self.targets.marched) else { return Ok(true) };
         self.progress.finished = Some(tiles.finished());
-        job::submit(&renderer.gpu, &self.finish);
-        let Some(cloud) = &self.targets.marched else { return Ok(()) };
         let clouds = readback::rgba(&renderer.gpu, &cloud.light)?;
         let background = readback::rgba(&renderer.gpu, &self.targets.background)?;
         let composed = composed(&clouds, &background);
-        match self.goal {
+        let is_good = match self.goal {
             Goal::Converged { tolerance, .. } => {
                 let moved = self.before.as_ref().map(|before| change(before, &composed));
                 // Steps of half the length leave a quarter of the error, so a third of the change is left; the whole
                 // change is the cautious estimate.
                 self.progress.error = moved;
-                self.progress.is_done =
-                    moved.is_some_and(|moved| moved <= tolerance) || !tiles.next_level(&renderer.gpu);
+                moved.is_some_and(|moved| moved <= tolerance)
             }
             Goal::PathTraced { tolerance, .. } => {
                 if let Some(variance) = &self.variance {
                     let variance = readback::rgba(&renderer.gpu, variance)?;
                     self.progress.error = Some(settings::standard_error(&composed, &variance));
                 }
-                let is_good = self.progress.finished >= Some(LEAST_SAMPLES)
-                    && self.progress.error.is_some_and(|error| error <= tolerance);
-                self.progress.is_done = is_good || !tiles.next_level(&renderer.gpu);
+                self.progress.finished >= Some(LEAST_SAMPLES)
+                    && self.progress.error.is_some_and(|error| error <= tolerance)
             }
-        }
+        };
         self.before = Some(composed);
-        self.progress.share = if self.progress.is_done { 1.0 } else { 0.0 };
-        Ok(())
-    }
-
-    /// The finished light of what was found so far, read back.
-    ///
-    /// # Errors
-    /// [`RenderError::Gpu`] if the device fails.
-    pub fn picture(&mut self, renderer: &Renderer) -> Result<TruthPicture, RenderError> {
-        let gpu = &renderer.gpu;
-        job::submit(gpu, self.prepare.make_contiguous());
-        self.prepare.clear();
-        job::submit(gpu, &self.finish);
-        self.finished_picture(renderer)
+        Ok(is_good || !tiles.next_level(&renderer.gpu))
     }
 
     /// The light of the last finished level or batch of samples, read back, whatever was begun since.
     ///
     /// # Errors
     /// [`RenderError::Gpu`] if the device fails.
-    pub fn finished_picture(&self, renderer: &Renderer) -> Result<TruthPicture, RenderError> {
-        let picture = read_back(&self.targets, renderer, self.candela_per_unit)?;
+    pub fn picture(&self, renderer: &Renderer) -> Result<TruthPicture, RenderError> {
+        let picture = read_back(&self.targets, renderer, (self.samples.side(), self.candela_per_unit))?;
         let variance = match &self.variance {
             Some(variance) => readback::rgba(&renderer.gpu, variance)?,
             None => Vec::new(),
@@ -334,16 +356,14 @@ impl Truth {
     /// display-encoded. The first two levels of a march show their steps as rings.
     pub fn display(&self) -> Option<&Texture> {
         let is_coarse = self.integrator == Integrator::Converged && self.progress.finished < Some(2);
-        self.before.as_ref().filter(|_| self.progress.is_done || !is_coarse).map(|_| &self.targets.display[0])
+        let is_worth_it = self.progress.pixel_samples > 0 || !is_coarse;
+        (self.has_picture && is_worth_it).then_some(&self.targets.display[0])
     }
 
-    /// The picture as it is shown, after [`Self::picture`] or a finished level: size, then red, green, blue and 255.
-    ///
-    /// # Errors
-    /// [`RenderError::Gpu`] if the device fails.
-    pub fn display_rgba8(&self, renderer: &Renderer) -> Result<([u32; 2], Vec<u8>), RenderError> {
-        let display = &self.targets.display[0];
-        Ok((display.size(), readback::texture(&renderer.gpu, display)?))
+    /// The same, with everything else let go.
+    pub fn into_display(self) -> Texture {
+        let [display, _] = self.targets.display;
+        display
     }
 }
 

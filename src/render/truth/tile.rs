@@ -300,19 +300,13 @@ impl Tiles {
 
     /// Starts the next level. `false` when there is none.
     pub(super) fn next_level(&mut self, gpu: &Gpu) -> bool {
-        self.tile = 0;
-        self.pace.forget();
         match self.goal {
             Goal::Converged { levels, .. } => {
                 if self.level + 1 >= levels {
                     return false;
                 }
                 self.level += 1;
-                let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-                for tile in &self.tiles {
-                    encoder.clear_buffer(&tile.state, 0, None);
-                }
-                gpu.queue.submit([encoder.finish()]);
+                self.begin_again(gpu);
             }
             Goal::PathTraced { .. } => {
                 let samples = self.next_samples();
@@ -320,9 +314,22 @@ impl Tiles {
                     return false;
                 }
                 self.samples = samples;
+                self.tile = 0;
+                self.pace.forget();
             }
         }
         true
+    }
+
+    /// Starts all rays anew on the same level.
+    pub(super) fn begin_again(&mut self, gpu: &Gpu) {
+        self.tile = 0;
+        self.pace.forget();
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        for tile in &self.tiles {
+            encoder.clear_buffer(&tile.state, 0, None);
+        }
+        gpu.queue.submit([encoder.finish()]);
     }
 
     pub(super) fn bytes(&self) -> u64 {

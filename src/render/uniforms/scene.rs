@@ -44,14 +44,20 @@ gpu_struct! {
         pub update_block: UVec2,
         /// The pixel of each block whose turn it is.
         pub update_offset: UVec2,
-        /// Factor and offset of the march's jitter.
+        /// Factor and offset of the march's jitter, which wraps at 1.
         pub jitter: Vec2,
+        /// Where in a pixel its rays pass, 0 to 1.
+        pub pixel_point: Vec2,
         /// 1 when every other row takes the other pixel.
         pub update_checkerboard: u32,
         /// Angle that one pixel spans.
         pub pixel_angle: f32,
         /// Radiance of the brightest stars.
         pub star_radiance: f32,
+        /// What this sample counts in the mean of all samples so far.
+        pub sample_share: f32,
+        /// Angle that one sample spans: a pixel's over the root of their number.
+        pub sample_angle: f32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad0: f32,
         /// Keeps the size a multiple of 16 bytes.

@@ -1,0 +1,92 @@
+//! Several samples of each pixel, for pictures that take their time: edges come out smooth, and what one jittered march
+//! meets by chance is met by all of them on average.
+//!
+//! Samples are whole pictures, one after the other over the same targets; the passes at their end keep two means in turn,
+//! of light for a file, and of display light for the screen. A disc far above white would have no smooth edge if its light
+//! were averaged before the tone map.
+
+use glam::Vec2;
+
+use super::uniforms::scene::ViewUniforms;
+use crate::gpu::Gpu;
+
+/// How far each sample shifts the jitter of the march: the golden ratio spreads any number of them evenly.
+const JITTER_SHIFT: f32 = 0.618_034;
+
+/// Where a picture's samples have got to.
+#[derive(Debug)]
+pub(super) struct PixelSamples {
+    view: ViewUniforms,
+    buffer: wgpu::Buffer,
+    count: u32,
+    current: u32,
+}
+
+impl PixelSamples {
+    /// `count` samples of what `view` sees, which `buffer` tells the passes. The first one is begun.
+    pub(super) fn new(gpu: &Gpu, view: &ViewUniforms, buffer: &wgpu::Buffer, count: u32) -> Self {
+        let samples = Self { view: *view, buffer: buffer.clone(), count: count.max(1), current: 0 };
+        samples.write(gpu);
+        samples
+    }
+
+    /// Begins the next one; `false` where there is none.
+    pub(super) fn next(&mut self, gpu: &Gpu) -> bool {
+        let is_there = self.current + 1 < self.count;
+        if is_there {
+            self.current += 1;
+            self.write(gpu);
+        }
+        is_there
+    }
+
+    /// How many there will be.
+    pub(super) fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Which of the two means the one under way goes into.
+    pub(super) fn side(&self) -> usize {
+        self.current as usize % 2
+    }
+
+    fn write(&self, gpu: &Gpu) {
+        let mut view = self.view;
+        view.pixel_point = point(self.current, self.count);
+        view.jitter.y = (self.view.jitter.y + self.current as f32 * JITTER_SHIFT).fract();
+        view.sample_share = 1.0 / (self.current + 1) as f32;
+        view.sample_angle = self.view.pixel_angle / (self.count as f32).sqrt();
+        gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&view));
+    }
+}
+
+/// A place in the unit square: no two of `count` share a row or a column of `count` each (rooks on a board), in the order
+/// of the van der Corput sequence. A single one lies in the middle.
+fn point(index: u32, count: u32) -> Vec2 {
+    let row = (0..count).filter(|other| other.reverse_bits() < index.reverse_bits()).count();
+    (Vec2::new(index as f32, row as f32) + 0.5) / count as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_sample_looks_through_the_middle() {
+        assert_eq!(point(0, 1), Vec2::splat(0.5));
+    }
+
+    #[test]
+    fn samples_share_neither_rows_nor_columns_and_balance() {
+        for count in [2u32, 3, 4, 7, 16, 64] {
+            let points: Vec<Vec2> = (0..count).map(|index| point(index, count)).collect();
+            let mean = points.iter().sum::<Vec2>() / count as f32;
+            assert!((mean - 0.5).length() < 1e-5, "{count}: the picture does not shift, {mean}");
+            let mut rows: Vec<f32> = points.iter().map(|point| point.y).collect();
+            rows.sort_by(f32::total_cmp);
+            let expected = (0..count).map(|row| (row as f32 + 0.5) / count as f32);
+            assert!(rows.iter().zip(expected).all(|(seen, row)| (seen - row).abs() < 1e-6), "{count}: {rows:?}");
+        }
+        assert_eq!([0, 1, 2, 3].map(|index| point(index, 4).y * 4.0), [0.5, 2.5, 1.5, 3.5], "no diagonal");
+    }
+}

@@ -1,0 +1,119 @@
+//! Stills: several samples of each pixel, in light for files and on the screen.
+
+use std::time::Duration;
+
+use nephoscope::gpu::readback;
+use nephoscope::render::Renderer;
+use nephoscope::render::truth::Goal;
+use nephoscope::scene::{Output, Quality, Scene};
+
+use crate::common::gpu;
+use crate::common::sky::{frame, quick, render, renderer};
+
+/// Clear sky and the sun, whose disc is ten pixels wide.
+fn sun_in_view() -> Scene {
+    let mut scene = Scene::default();
+    scene.layers.clear();
+    scene.ground.visible = false;
+    scene.sunshafts.strength = 0.0;
+    (scene.sun.elevation_deg, scene.camera.pitch_deg) = (30.0, 30.0);
+    scene.camera.heading_deg = scene.sun.azimuth_deg;
+    scene.camera.field_of_view_deg = 2.0;
+    // The disc is white on the screen, and the sky is not.
+    scene.display.exposure_ev = 16.0;
+    scene
+}
+
+const SMALL: [u32; 2] = [40, 40];
+
+/// Linear light and display of a finished still.
+fn still(scene: &Scene, pixel_samples: u32, size: [u32; 2]) -> (Vec<[f32; 4]>, Vec<u8>) {
+    let mut renderer = renderer();
+    let quality = Quality { pixel_samples, ..quick() };
+    let still = renderer.still(&frame(scene, &quality, size, Output::Linear)).expect("it can be rendered");
+    assert_eq!(still.pixel_samples(), (pixel_samples, pixel_samples), "all are finished");
+    let light = still.picture(&renderer).expect("it can be read").image.rgba;
+    (light, readback::texture(gpu(), &still.into_display()).expect("it can be read"))
+}
+
+/// The mean of each 8×8 pixels.
+fn reduced(large: &[f32]) -> Vec<f32> {
+    let [width, height] = SMALL.map(|side| side as usize);
+    let mean = |x: usize, y: usize| {
+        let inside = (0..64).map(|at| large[(8 * y + at / 8) * 8 * width + 8 * x + at % 8]);
+        inside.sum::<f32>() / 64.0
+    };
+    (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect()
+}
+
+fn greatest_difference(seen: &[f32], expected: &[f32]) -> f32 {
+    let greatest = expected.iter().copied().fold(0.0f32, f32::max);
+    seen.iter().zip(expected).map(|(seen, expected)| (seen - expected).abs() / greatest).fold(0.0, f32::max)
+}
+
+fn display_light(bytes: &[u8]) -> Vec<f32> {
+    let decoded = |byte: u8| {
+        let c = f32::from(byte) / 255.0;
+        if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    };
+    bytes.chunks_exact(4).map(|pixel| decoded(pixel[1])).collect()
+}
+
+#[test]
+fn samples_give_the_mean_over_the_pixel_in_light_and_on_the_screen() {
+    let scene = sun_in_view();
+    let green = |rgba: &[[f32; 4]]| -> Vec<f32> { rgba.iter().map(|light| light[1]).collect() };
+    let (large, large_shown) = still(&scene, 1, SMALL.map(|side| 8 * side));
+    let (expected, expected_shown) = (reduced(&green(&large)), reduced(&display_light(&large_shown)));
+    let (many, many_shown) = still(&scene, 64, SMALL);
+    let (one, one_shown) = still(&scene, 1, SMALL);
+    for (name, many, one, expected, least) in [
+        // In light the disc has a soft edge of its own.
+        ("light", green(&many), green(&one), expected, 0.08),
+        ("screen", display_light(&many_shown), display_light(&one_shown), expected_shown, 0.3),
+    ] {
+        let (smooth, rough) = (greatest_difference(&many, &expected), greatest_difference(&one, &expected));
+        // Of 64 samples about three fall on the other side of an edge than 64 others do.
+        assert!(smooth < 0.06, "{name}: {smooth} off");
+        assert!(rough > least, "{name}: one sample has rough edges, {rough}");
+    }
+}
+
+#[test]
+fn a_still_of_one_sample_is_the_frame_bit_for_bit() {
+    let scene = Scene::default();
+    let (seen, seen_shown) = still(&scene, 1, SMALL);
+    let mut renderer = renderer();
+    render(&mut renderer, &frame(&scene, &quick(), SMALL, Output::Linear));
+    let light = renderer.linear().expect("it can be read").rgba;
+    let bits = |rgba: &[[f32; 4]]| -> Vec<[u32; 4]> { rgba.iter().map(|light| light.map(f32::to_bits)).collect() };
+    assert_eq!(bits(&seen), bits(&light));
+    assert_eq!(seen_shown, renderer.display_rgba8().expect("it can be read").1);
+}
+
+fn converged(renderer: &mut Renderer, scene: &Scene, pixel_samples: u32) -> Vec<[f32; 4]> {
+    let quality = Quality { pixel_samples, ..quick() };
+    let frame = frame(scene, &quality, SMALL, Output::Linear);
+    let goal = Goal::Converged { tolerance: 0.9, levels: 2 };
+    let mut truth = renderer.begin_truth(&frame, goal, pixel_samples).expect("it begins");
+    let slice = Duration::from_millis(100);
+    while !truth.advance(renderer, slice, slice).expect("it goes on").is_done {}
+    assert_eq!(truth.progress().pixel_samples, pixel_samples, "all are finished");
+    truth.picture(renderer).expect("it can be read").image.rgba
+}
+
+#[test]
+fn converged_pictures_have_their_samples_too() {
+    let scene = sun_in_view();
+    let expected = still(&scene, 4, SMALL).0;
+    assert_eq!(converged(&mut renderer(), &scene, 4), expected, "without cloud both are the same passes");
+
+    let mut scene = Scene::default();
+    scene.camera.pitch_deg = 25.0;
+    let mean = |rgba: &[[f32; 4]]| rgba.iter().map(|light| f64::from(light[1])).sum::<f64>() / rgba.len() as f64;
+    let mut renderer = renderer();
+    let (one, several) = (converged(&mut renderer, &scene, 1), converged(&mut renderer, &scene, 3));
+    assert_ne!(one, several, "other rays");
+    let ratio = mean(&several) / mean(&one);
+    assert!((ratio - 1.0).abs() < 0.02, "of the same sky: {ratio}");
+}
