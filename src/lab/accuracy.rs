@@ -55,8 +55,13 @@ pub enum AccuracyError {
 }
 
 /// Parameters that a whole march through the middle of each pixel does without.
-const PUT_TOGETHER: [&str; 4] =
-    ["quality.update", "quality.update_order", "quality.resolution_scale", "quality.pixel_samples"];
+const PUT_TOGETHER: [&str; 5] = [
+    "quality.update",
+    "quality.update_order",
+    "quality.resolution_scale",
+    "quality.pixel_samples",
+    "quality.still_step",
+];
 
 /// One parameter of quality and the values it takes.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -87,12 +87,13 @@ impl Renderer {
         Ok(Still { targets, candela_per_unit, samples, each, finish, jobs, finished: 0, times, source })
     }
 
-    /// A finished still, with as many samples of each pixel as the frame's quality says.
+    /// A finished still as the frame's quality has it: with its samples of each pixel, and its shorter steps.
     ///
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
     pub fn still(&mut self, frame: &Frame<'_>) -> Result<Still, RenderError> {
-        let mut still = self.begin_still(frame, frame.quality.pixel_samples)?;
+        let quality = frame.quality.of_still();
+        let mut still = self.begin_still(&Frame { quality: &quality, ..*frame }, quality.pixel_samples)?;
         still.advance(self, Duration::MAX)?;
         Ok(still)
     }

@@ -79,6 +79,8 @@ params! {
         update_order: UpdateOrder = UpdateOrder::Cross;
         /// Samples of each pixel in a still, and in the window at rest. A picture that moves has one.
         pixel_samples: u32 = 4, 1..=64, None;
+        /// Length of the steps of a still, and of the window at rest, relative to those of a picture that moves.
+        still_step: f32 = 0.55, 0.1..=1.0, None;
         /// Resolution of the picture relative to its frame.
         resolution_scale: f32 = 1.0, 0.1..=2.0, None;
         /// Edge length of the map of cloud shadows on the ground.
@@ -101,6 +103,7 @@ impl Quality {
                 light_detail_steps: 0,
                 octaves: 4,
                 pixel_samples: 1,
+                still_step: 1.0,
                 resolution_scale: 0.75,
                 shadow_map_px: 128,
                 ..Self::default()
@@ -119,6 +122,7 @@ impl Quality {
                 early_exit: 0.004,
                 detail_distance_m: 40_000.0,
                 update: UpdateFraction::Full,
+                still_step: 1.0,
                 shadow_map_px: 384,
                 shaft_samples: 48,
                 ..Self::default()
@@ -137,10 +141,27 @@ impl Quality {
                 detail_distance_m: 200_000.0,
                 update: UpdateFraction::Full,
                 pixel_samples: 8,
+                still_step: 1.0,
                 shadow_map_px: 512,
                 shaft_samples: 64,
                 ..Self::default()
             },
+        }
+    }
+
+    /// The same for a picture that takes its time: all pixels, and shorter steps.
+    #[must_use]
+    pub fn of_still(&self) -> Self {
+        let scale = self.still_step;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
+        let view_steps = (self.view_steps as f32 / scale).ceil().min(1024.0) as u32;
+        Self {
+            view_steps,
+            step_m: self.step_m * scale,
+            step_growth: self.step_growth * scale,
+            update: UpdateFraction::Full,
+            still_step: 1.0,
+            ..self.clone()
         }
     }
 
@@ -155,6 +176,17 @@ impl Quality {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn steps_of_a_still_are_shorter_and_reach_as_far() {
+        let quality = Quality { still_step: 0.5, ..Quality::default() };
+        let still = quality.of_still();
+        assert_eq!((still.step_m, still.step_growth), (0.5 * quality.step_m, 0.5 * quality.step_growth));
+        assert_eq!(still.view_steps, 2 * quality.view_steps);
+        assert_eq!(still.of_still(), still, "once is enough");
+        let high = Quality::level(QualityLevel::High);
+        assert_eq!(high.of_still(), high, "high is meant for stills as it is");
+    }
 
     #[test]
     fn light_steps_grow_over_a_kilometre_as_they_are_told() {

@@ -29,7 +29,7 @@ const SMALL: [u32; 2] = [40, 40];
 /// Linear light and display of a finished still.
 fn still(scene: &Scene, pixel_samples: u32, size: [u32; 2]) -> (Vec<[f32; 4]>, Vec<u8>) {
     let mut renderer = renderer();
-    let quality = Quality { pixel_samples, ..quick() };
+    let quality = Quality { pixel_samples, still_step: 1.0, ..quick() };
     let still = renderer.still(&frame(scene, &quality, size, Output::Linear)).expect("it can be rendered");
     assert_eq!(still.pixel_samples(), (pixel_samples, pixel_samples), "all are finished");
     let light = still.picture(&renderer).expect("it can be read").image.rgba;

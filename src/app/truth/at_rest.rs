@@ -67,7 +67,8 @@ impl AtRest {
     }
 
     pub(super) fn begin_smooth(&mut self, renderer: &mut Renderer, frame: &Frame<'_>) -> Result<(), RenderError> {
-        let still = renderer.begin_still(frame, frame.quality.pixel_samples)?;
+        let quality = frame.quality.of_still();
+        let still = renderer.begin_still(&Frame { quality: &quality, ..*frame }, quality.pixel_samples)?;
         self.smooth_samples = still.pixel_samples();
         self.smooth = Slot::Working(Box::new(still));
         Ok(())

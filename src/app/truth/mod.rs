@@ -121,7 +121,7 @@ impl Truths {
         self.generation += 1;
         self.is_comparing = false;
         self.schedule.restart(now);
-        if self.quality.pixel_samples == 1 {
+        if self.quality.pixel_samples == 1 && self.quality.of_still() == self.quality {
             // The window's own frame is that picture.
             self.schedule.finished(Task::Smooth);
         }
