@@ -179,13 +179,14 @@ fn above_horizon(air: AirUniforms, dir_y: f32) -> f32 {
 }
 
 // Row of a direction: the lower half of the table lies below the true horizon, the upper half above it, both with rows
-// that crowd towards it; no row mixes the two, for the horizon is an edge.
+// that crowd towards it; no row mixes the two, for the horizon is an edge. Below it they crowd the more, for the ground
+// comes near quickly, and between two rows that meet it far apart the air would be too bright: a light line.
 fn elevation_row(air: AirUniforms, dir_y: f32, rows: f32) -> f32 {
   let horizon = -asin(horizon_dip_sine(air.planet_radius_m, air.eye_altitude_m));
   let above = above_horizon(air, dir_y);
   let half_rows = 0.5 * rows;
   let up = half_rows + (half_rows - 1.0) * sqrt(clamp(above / (0.5 * PI - horizon), 0.0, 1.0));
-  let down = (half_rows - 1.0) * (1.0 - sqrt(clamp(-above / (0.5 * PI + horizon), 0.0, 1.0)));
+  let down = (half_rows - 1.0) * (1.0 - pow(clamp(-above / (0.5 * PI + horizon), 0.0, 1.0), 1.0 / 3.0));
   return (select(down, up, above >= 0.0) + 0.5) / rows;
 }
 
@@ -198,7 +199,7 @@ fn row_elevation(air: AirUniforms, row: u32, rows: f32) -> vec2f {
     return vec2f(horizon + x * x * (0.5 * PI - horizon), 1.0);
   }
   let x = 1.0 - f32(row) / (half_rows - 1.0);
-  return vec2f(horizon - x * x * (0.5 * PI + horizon), -1.0);
+  return vec2f(horizon - x * x * x * (0.5 * PI + horizon), -1.0);
 }
 
 // Azimuth coordinate 0..1 of the aerial tables, finest about the main light, where the aureole is.
