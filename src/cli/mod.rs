@@ -12,6 +12,7 @@ mod integrate;
 mod json;
 mod presets;
 mod render;
+mod verify;
 
 use std::path::PathBuf;
 
@@ -52,6 +53,8 @@ enum Command {
     Bench(Box<bench::BenchArgs>),
     /// Measures how far pictures are from the truth, and what that costs.
     Accuracy(Box<accuracy::AccuracyArgs>),
+    /// Checks that pictures on this machine keep what the program promises.
+    Verify(verify::VerifyArgs),
 }
 
 /// Changes to the sky.
@@ -88,6 +91,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
+        Some(Command::Verify(args)) => verify::run(&args),
     }
 }
 

@@ -152,6 +152,23 @@ pub struct TruthImage {
     shown: Vec<[f32; 3]>,
 }
 
+impl TruthImage {
+    /// Light of each pixel.
+    pub fn light(&self) -> &[[f32; 3]] {
+        &self.light
+    }
+
+    /// Opacity of the clouds in each pixel.
+    pub fn opacity(&self) -> &[f32] {
+        &self.opacity
+    }
+
+    /// Variance of each pixel's mean; empty for a march.
+    pub fn variance(&self) -> &[[f32; 3]] {
+        self.variance.as_deref().unwrap_or_default()
+    }
+}
+
 fn rgb(pixels: &[[f32; 4]]) -> Vec<[f32; 3]> {
     pixels.iter().map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
 }

@@ -12,3 +12,4 @@ pub mod pareto;
 pub mod plot;
 pub mod table;
 pub mod thesis;
+pub mod verify;

@@ -1,0 +1,60 @@
+//! `verify`: checks of whole frames on this machine.
+
+use anyhow::Result;
+use clap::Args;
+
+use super::{Device, print};
+use crate::files;
+use crate::gpu::Gpu;
+use crate::lab::verify::{Check, single_scattering_agrees, stays_finite};
+use crate::render::Renderer;
+use crate::scene::builtin::BUILTINS;
+
+#[derive(Debug, Args)]
+pub(super) struct VerifyArgs {
+    /// Skies to check: built-in names or files; the first built-in one if none is given.
+    skies: Vec<std::path::PathBuf>,
+    /// Check all built-in skies, larger, with more paths and from more places. Takes many minutes on a processor.
+    #[arg(long)]
+    full: bool,
+    #[command(flatten)]
+    device: Device,
+}
+
+/// Some promise does not hold.
+#[derive(Debug, thiserror::Error)]
+#[error("{failed} of {count} checks failed on {adapter}")]
+struct Failed {
+    failed: usize,
+    count: usize,
+    adapter: String,
+}
+
+pub(super) fn run(args: &VerifyArgs) -> Result<()> {
+    let builtin = if args.full { BUILTINS } else { &BUILTINS[..1] };
+    let names = if args.skies.is_empty() {
+        builtin.iter().map(|builtin| std::path::PathBuf::from(builtin.name)).collect()
+    } else {
+        args.skies.clone()
+    };
+    let skies = names.iter().map(|name| files::open(name)).collect::<Result<Vec<_>, _>>()?;
+    let gpu = Gpu::headless(&args.device.choice())?;
+    print(&format!("{}\n", gpu.description()))?;
+    let mut renderer = Renderer::new(&gpu)?;
+    let (size, paths, views) = if args.full { ([64, 36], 128, 20) } else { ([32, 18], 64, 4) };
+    let mut all: Vec<Check> = Vec::new();
+    for sky in &skies {
+        let named = (sky.preset.name.as_str(), &sky.preset.scene);
+        let mut checks = single_scattering_agrees(&mut renderer, named, (size, paths), &mut |_| {})?;
+        checks.push(stays_finite(&mut renderer, named, (size, views))?);
+        for check in &checks {
+            print(&format!("{}\n", check.line()))?;
+        }
+        all.append(&mut checks);
+    }
+    let failed = all.iter().filter(|check| !check.holds).count();
+    if failed > 0 {
+        return Err(Failed { failed, count: all.len(), adapter: gpu.description() }.into());
+    }
+    print(&format!("all {} checks hold\n", all.len()))
+}
