@@ -31,7 +31,12 @@ pub(crate) fn baked_bounds() -> &'static [Texture; 4] {
 
 /// Bounds that know nothing: the greatest field anywhere.
 pub(crate) fn blind_bounds() -> [Texture; 4] {
-    NAMES.map(|(_, cells)| scalars([cells; 2], &vec![1.0; (cells * cells) as usize]))
+    bounds_of(1.0)
+}
+
+/// Bounds that take the map's field for one value everywhere.
+pub(crate) fn bounds_of(field: f32) -> [Texture; 4] {
+    NAMES.map(|(_, cells)| scalars([cells; 2], &vec![field; (cells * cells) as usize]))
 }
 
 /// The bounds by the names that shaders give them.

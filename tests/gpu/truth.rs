@@ -5,7 +5,7 @@ use nephoscope::gpu::ProgramKey;
 
 use crate::common::field::{Field, linear_repeat, run, view_of};
 use crate::common::slab::{FLAT, March, PROFILE, THESIS, UNIFORM, noisy_layer, slab_light};
-use crate::common::truth::{Mean, baked_bounds, blind_bounds, named};
+use crate::common::truth::{Mean, baked_bounds, blind_bounds, bounds_of, named};
 use crate::common::{Case, Random, bits3, gpu};
 use wgpu::util::DeviceExt as _;
 
@@ -92,14 +92,24 @@ fn the_converged_march_is_of_second_order() {
 #[test]
 fn single_scattering_of_a_slab_is_that_of_its_closed_form() {
     for (tau, mu, mu0, up) in [(0.5_f32, 0.7_f32, 0.6_f32, false), (2.0, 0.4, 0.9, true), (8.0, 0.8, 0.5, false)] {
-        let march = lit_slab(tau, 0.9, None, mu0, towards(mu, up, 60.0));
-        let (mean, counted) = march.traced(128, 1, &blind_bounds());
-        let expected = 0.9 * ISOTROPIC * slab_light(tau.into(), 100_000, (mu.into(), mu0.into()), up);
-        let name = format!("tau {tau}, mu {mu}, mu0 {mu0}, up {up}");
-        check(&name, mean.light, mean.light_error, expected);
-        let opacity = -(-f64::from(tau) / f64::from(mu)).exp_m1();
-        check(&name, mean.opacity, mean.opacity_error, opacity);
-        assert_eq!(counted[2..], [0, 0], "{name}: nothing over its majorant, nothing cut");
+        let mut march = lit_slab(tau, 0.9, None, mu0, towards(mu, up, 60.0));
+        for bound in ["tight", "twice the extinction"] {
+            if bound != "tight" {
+                // Half the density of twice the extinction, under a bound that takes the field for twice of what it is.
+                let layer = &mut march.scene.layers[0];
+                (layer.body_scale, layer.body_bias) = (0.5, 0.0);
+                (layer.body_scale_beyond, layer.body_bias_beyond) = (0.5, 0.0);
+                layer.extinction_per_m *= 2.0;
+            }
+            let bounds = if bound == "tight" { blind_bounds() } else { bounds_of(2.0) };
+            let (mean, counted) = march.traced(128, 1, &bounds);
+            let expected = 0.9 * ISOTROPIC * slab_light(tau.into(), 100_000, (mu.into(), mu0.into()), up);
+            let name = format!("tau {tau}, mu {mu}, mu0 {mu0}, up {up}, bound {bound}");
+            check(&name, mean.light, mean.light_error, expected);
+            let opacity = -(-f64::from(tau) / f64::from(mu)).exp_m1();
+            check(&name, mean.opacity, mean.opacity_error, opacity);
+            assert_eq!(counted[2..], [0, 0], "{name}: nothing over its majorant, nothing cut");
+        }
     }
 }
 
