@@ -16,7 +16,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
     ("reference", &["render"]),
     ("export", &["images"]),
     ("files", &["scene", "export", "images", "render"]),
-    ("lab", &["scene", "plan", "render", "gpu"]),
+    ("lab", &["scene", "plan", "render", "gpu", "reference"]),
     // The plan, the timings and the lab's results are read, never made; of the editor, what it shows and what it is told.
     ("ui", &["scene", "plan", "gpu", "lab", "app::action", "app::document"]),
     ("cli", &["app", "export", "files", "gpu", "images", "lab", "plan", "render", "scene", "shader", "ui"]),

@@ -4,8 +4,11 @@
 //! they walk through them. With single scattering of the key light alone both have to see the same picture: the converged
 //! march up to its last halving of steps, paths up to their noise.
 
+use glam::UVec3;
+
 use super::accuracy::{AccuracyError, TruthImage, truth};
 use crate::gpu::GpuError;
+use crate::reference::random::{pcg3d, unit_from_bits};
 use crate::render::truth::{Convergence, Goal};
 use crate::render::{RenderError, Renderer};
 use crate::scene::param::Choice as _;
@@ -153,7 +156,7 @@ pub fn single_scattering_agrees(
 /// A camera and a sun that nobody chose, by a hash of `index`: anywhere from the ground to above the clouds, at any hour.
 pub fn anywhere(scene: &Scene, index: u32) -> Scene {
     let mut scene = scene.clone();
-    let draw = |salt: u32| f64::from(hash(index.wrapping_mul(31).wrapping_add(salt))) / f64::from(u32::MAX);
+    let draw = |salt: u32| f64::from(unit_from_bits(pcg3d(UVec3::new(index, salt, 0)).x));
     #[allow(clippy::cast_possible_truncation, reason = "a place, to single precision")]
     let between = |low: f64, high: f64, salt: u32| (low + (high - low) * draw(salt)) as f32;
     scene.camera.height_m = 2.0 + between(0.0, 1.0, 1).powi(2) * 9000.0;
@@ -164,15 +167,6 @@ pub fn anywhere(scene: &Scene, index: u32) -> Scene {
     scene.sun.elevation_deg = between(-8.0, 85.0, 6);
     scene.sun.azimuth_deg = between(0.0, 360.0, 7);
     scene
-}
-
-/// Avalanche of 32 bits (Wellons 2018, lowbias32).
-fn hash(mut x: u32) -> u32 {
-    x ^= x >> 16;
-    x = x.wrapping_mul(0x7feb_352d);
-    x ^= x >> 15;
-    x = x.wrapping_mul(0x846c_a68b);
-    x ^ (x >> 16)
 }
 
 /// The realtime picture has no value that is not finite or is negative, from `views` places that nobody chose.
@@ -217,7 +211,7 @@ mod tests {
 
     /// Normal deviates of variance 1, by the sum of twelve draws.
     fn noise(index: u32) -> f64 {
-        (0..12).map(|k| f64::from(hash(index * 12 + k)) / f64::from(u32::MAX)).sum::<f64>() - 6.0
+        (0..12).map(|k| f64::from(unit_from_bits(pcg3d(UVec3::new(index, k, 1)).x))).sum::<f64>() - 6.0
     }
 
     #[test]
