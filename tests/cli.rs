@@ -94,7 +94,7 @@ fn bad_presets_are_refused_with_place_parameter_and_range() {
 fn missing_and_foreign_files_are_refused() {
     let folder = folder();
     refuses(&folder, &render("nowhere.ron", "a.png", &[]), 4, &["nowhere.ron", "no such file"]);
-    refuses(&folder, &["verify", "nowhere.ron"].map(str::to_owned), 4, &["nowhere.ron", "no such file"]);
+    refuses(&folder, &["verify", "nowhere.ron"], 4, &["nowhere.ron", "no such file"]);
     refuses(&folder, &render("fair_wether", "a.png", &[]), 4, &["did you mean fair_weather?", "presets list"]);
     std::fs::write(folder.path().join("bytes.ron"), [0_u8, 255, 254]).expect("written");
     refuses(&folder, &render("bytes.ron", "a.png", &[]), 4, &["bytes.ron", "not a text file"]);
