@@ -104,8 +104,12 @@ impl Agreement {
     }
 }
 
+/// Extinction of the clouds that are compared, relative to the sky's own. Through a thick deck light scattered once hardly
+/// passes, and the few paths that see any say little.
+const THINNING: f32 = 0.05;
+
 /// The sky as both integrators can see it: the key light scattered once, no other light on the clouds, no air before
-/// them, and the same extinction towards the light as along the ray.
+/// them, the same extinction towards the light as along the ray, and thin enough for light to pass.
 fn single_scattering(scene: &Scene) -> Scene {
     let mut single = scene.clone();
     single.scattering.ambient = 0.0;
@@ -113,6 +117,8 @@ fn single_scattering(scene: &Scene) -> Scene {
     single.sunshafts.strength = 0.0;
     for layer in &mut single.layers {
         layer.shadow_extinction_scale = 1.0;
+        layer.scattering_per_m *= THINNING;
+        layer.absorption_per_m *= THINNING;
     }
     single
 }

@@ -1,48 +1,11 @@
 //! The window's picture at rest: the realtime one with several samples of each pixel, then the converged one with as many.
 
+use super::slot::Slot;
 use super::{LEVELS, SLICE, TOLERANCE};
 use crate::gpu::Texture;
 use crate::render::truth::{Convergence, Goal, Truth};
 use crate::render::{RenderError, Renderer, Still};
 use crate::scene::Frame;
-
-/// What is kept of a picture: everything while it is made, then the picture alone.
-#[derive(Debug, Default)]
-enum Slot<T> {
-    #[default]
-    Empty,
-    Working(Box<T>),
-    Finished(Texture),
-}
-
-impl<T> Slot<T> {
-    fn is_begun(&self) -> bool {
-        !matches!(self, Self::Empty)
-    }
-
-    fn finish(&mut self, display: impl FnOnce(T) -> Texture) {
-        *self = match std::mem::take(self) {
-            Self::Working(work) => Self::Finished(display(*work)),
-            other => other,
-        };
-    }
-
-    fn display<'a>(&'a self, display: impl FnOnce(&'a T) -> Option<&'a Texture>) -> Option<&'a Texture> {
-        match self {
-            Self::Empty => None,
-            Self::Working(work) => display(work),
-            Self::Finished(texture) => Some(texture),
-        }
-    }
-
-    fn bytes(&self, bytes: impl FnOnce(&T) -> u64) -> u64 {
-        match self {
-            Self::Empty => 0,
-            Self::Working(work) => bytes(work),
-            Self::Finished(texture) => texture.bytes(),
-        }
-    }
-}
 
 /// What a slice of work led to.
 #[derive(Clone, Copy, Debug, Default)]

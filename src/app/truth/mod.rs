@@ -3,6 +3,7 @@
 mod at_rest;
 mod compare;
 mod schedule;
+mod slot;
 
 pub(super) use compare::{Compared, Job as CompareJob};
 pub(super) use schedule::{Task, Turn, Wishes};
@@ -19,6 +20,7 @@ use crate::ui::{Figures, Picture, Refined, Refinement};
 use at_rest::{AtRest, Worked};
 use compare::Linear;
 use schedule::Schedule;
+use slot::Slot;
 
 /// Work between two turns of the event loop.
 const SLICE: Duration = Duration::from_millis(20);
@@ -57,7 +59,7 @@ struct Moment {
     /// What is shown at rest.
     at_rest: AtRest,
     /// What is compared.
-    still: Option<Still>,
+    still: Slot<Still>,
     converged: Option<Kept>,
     traced: Option<Kept>,
     /// The still's light, once it was read back.
@@ -187,7 +189,7 @@ impl Truths {
         let (is_there, integrator) = match task {
             Task::Smooth => (self.moment.at_rest.has_begun_smooth(), Integrator::Realtime),
             Task::Converged => (self.moment.at_rest.has_begun_converged(), Integrator::Converged),
-            Task::Still => (self.moment.still.is_some(), Integrator::Realtime),
+            Task::Still => (self.moment.still.is_begun(), Integrator::Realtime),
             Task::Truth(integrator) => (self.moment.kept(integrator).is_some(), integrator),
         };
         if is_there {
@@ -201,7 +203,7 @@ impl Truths {
         match task {
             Task::Smooth => self.moment.at_rest.begin_smooth(renderer, &frame)?,
             Task::Converged => self.moment.at_rest.begin_converged(renderer, &frame)?,
-            Task::Still => self.moment.still = Some(renderer.begin_still(&frame, pixel_samples)?),
+            Task::Still => self.moment.still = Slot::Working(Box::new(renderer.begin_still(&frame, pixel_samples)?)),
             Task::Truth(_) => {
                 let truth = renderer.begin_truth(&frame, goal(integrator), pixel_samples)?;
                 *self.moment.slot(integrator) = Some(Kept { truth, finished: None, compared: None });
@@ -213,19 +215,19 @@ impl Truths {
     /// What is compared next, if there is anything new to compare and nothing is being compared.
     pub(super) fn comparison(&mut self, renderer: &Renderer) -> Result<Option<CompareJob>, RenderError> {
         let (Some(inputs), false) = (&self.inputs, self.is_comparing) else { return Ok(None) };
-        let Some(still) = self.moment.still.as_ref().filter(|still| still.display().is_some()) else {
+        if self.still().is_none() {
             return Ok(None);
-        };
+        }
         let is_new = |kept: &Kept| kept.finished.is_some() && kept.finished != kept.compared;
         let all = [Integrator::Converged, Integrator::PathTraced];
         let Some(integrator) = all.into_iter().find(|which| self.moment.kept(*which).is_some_and(is_new)) else {
             return Ok(None);
         };
-        let linear = match &self.moment.linear {
-            Some(linear) => linear.clone(),
-            None => std::sync::Arc::new(Linear::new(&still.picture(renderer)?)),
-        };
-        self.moment.linear = Some(linear.clone());
+        if let Slot::Working(still) = &self.moment.still {
+            self.moment.linear = Some(std::sync::Arc::new(Linear::new(&still.picture(renderer)?)));
+            self.moment.still.finish(Still::into_display);
+        }
+        let Some(linear) = self.moment.linear.clone() else { return Ok(None) };
         let (scene, size) = (inputs.scene.clone(), inputs.size);
         let Some(kept) = self.moment.kept_mut(integrator) else { return Ok(None) };
         kept.compared = kept.finished;
@@ -263,7 +265,7 @@ impl Truths {
 
     /// The realtime picture of all pixels, once it is finished.
     pub(super) fn still(&self) -> Option<&Texture> {
-        self.moment.still.as_ref().and_then(Still::display)
+        self.moment.still.display(Still::display)
     }
 
     /// What was measured so far, with the time of the truth that it was measured against.
@@ -333,13 +335,13 @@ impl Truths {
     pub(super) fn bytes(&self) -> u64 {
         let kept = [&self.moment.converged, &self.moment.traced].into_iter().flatten();
         let compared = kept.map(|kept| kept.truth.bytes()).sum::<u64>();
-        self.moment.at_rest.bytes() + compared + self.moment.still.as_ref().map_or(0, Still::bytes)
+        self.moment.at_rest.bytes() + compared + self.moment.still.bytes(Still::bytes)
     }
 }
 
 impl Moment {
     fn work_on_still(&mut self, renderer: &Renderer) -> Result<Worked, RenderError> {
-        let Some(still) = &mut self.still else { return Ok(Worked::default()) };
+        let Slot::Working(still) = &mut self.still else { return Ok(Worked { is_done: true, has_picture: false }) };
         let is_done = still.advance(renderer, SLICE)?;
         if is_done {
             self.figures.cost_ms = still.total_ms();
