@@ -270,3 +270,31 @@ fn bench_prints_the_adapter_the_passes_and_a_banner() {
     let flight = renders(&folder, &[&args[..], &["--flight", "--csv"]].concat());
     assert!(stdout(&flight).contains("frames per second"), "{}", stdout(&flight));
 }
+
+#[test]
+fn clouds_go_out_as_voxels_and_come_back() {
+    let folder = folder();
+    let baked = nephoscope(&folder, &["grid", "fair_weather", "--voxels", "8", "--format", "both", "-o", "cloud.json"]);
+    assert_eq!(baked.status.code(), Some(0), "{}", stderr(&baked));
+    assert!(stdout(&baked).contains("cloud.json, cloud.npy, cloud.vol: 8 x 4 x 8 voxels"), "{}", stdout(&baked));
+    let drawn = nephoscope(&folder, &render("cloud.json", "cloud.png", &[]));
+    assert_eq!(drawn.status.code(), Some(0), "{}", stderr(&drawn));
+
+    let npy = folder.path().join("cloud.npy");
+    let bytes = std::fs::read(&npy).expect("written");
+    std::fs::write(&npy, &bytes[..bytes.len() - 6]).expect("written");
+    refuses(&folder, &render("cloud.json", "b.png", &[]), 4, &["cloud.npy", "254 voxels", "promises 256"]);
+    let mut damaged = bytes;
+    let at = damaged.len() - 4;
+    damaged[at..].copy_from_slice(&f32::NAN.to_le_bytes());
+    std::fs::write(&npy, &damaged).expect("written");
+    refuses(&folder, &render("cloud.json", "b.png", &[]), 4, &["cloud.npy", "[z][y][x] = [7][3][7]", "NaN"]);
+    let set = ["--set", "domain.kind=Box", "--set", "layers.0.model=Grid"];
+    let named = [&set[..], &["--set", "layers.0.grid=nowhere.npy"]].concat();
+    refuses(&folder, &render("fair_weather", "b.png", &named), 4, &["layers.0.grid", "nowhere.npy", "no such file"]);
+    refuses(&folder, &render("fair_weather", "b.png", &set), 4, &["layers.0.grid", "no file is named"]);
+    refuses(&folder, &render("fair_weather", "b.png", &set[2..]), 2, &["domain.kind", "Box"]);
+    refuses(&folder, &["grid", "fair_weather", "-o", "cloud.npy"], 2, &["cloud.npy", ".json"]);
+    refuses(&folder, &["grid", "fair_weather", "--set", "weather.coverage=0", "-o", "c.json"], 2, &["coverage is 0"]);
+    refuses(&folder, &["grid", "fair_weather", "--voxels", "8", "-o", "nowhere/c.json"], 4, &["no folder"]);
+}

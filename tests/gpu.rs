@@ -6,6 +6,7 @@ mod gpu {
     mod absent;
     mod density;
     mod frames;
+    mod grid;
     mod math;
     mod noise;
     mod phase;

@@ -1,14 +1,18 @@
 // The density field with its textures bound: the one place where clouds are read.
+#import "cloud/costa.wgsl"
 #import "cloud/profile.wgsl"
 #import "cloud/thesis.wgsl"
 #import "cloud/weather.wgsl"
 #import "common/shell.wgsl"
+#import "common/trilinear.wgsl"
 #import "generated/LayerUniforms.wgsl"
 #import "generated/SceneUniforms.wgsl"
 
 const MODEL_PROFILE: u32 = 0u;
 const MODEL_THESIS: u32 = 1u;
 const MODEL_UNIFORM: u32 = 2u;
+const MODEL_TEXTURE: u32 = 3u;
+const MODEL_GRID: u32 = 4u;
 const DOMAIN_SHELL: u32 = 0u;
 const DOMAIN_FLAT: u32 = 1u;
 const DOMAIN_BOX: u32 = 2u;
@@ -19,10 +23,17 @@ override DOMAIN: u32 = 0u;
 override LAYERS: u32 = 1u;
 
 @group(1) @binding(0) var<uniform> scene: SceneUniforms;
+#if MAPLESS
+#else
 @group(1) @binding(1) var weather_map: texture_2d<f32>;
+#endif
 @group(1) @binding(2) var linear_repeat: sampler;
 #if PROFILE
 @group(1) @binding(3) var shape_noise: texture_3d<f32>;
+#else
+#if TEXTURE
+@group(1) @binding(3) var shape_noise: texture_3d<f32>;
+#endif
 #endif
 #if THESIS
 @group(1) @binding(4) var worley_noise: texture_3d<f32>;
@@ -35,6 +46,10 @@ override LAYERS: u32 = 1u;
 #endif
 #if SKIP
 @group(1) @binding(7) var weather_bound: texture_2d<f32>;
+#endif
+// Voxels in the box: of the one layer that is a file; or, baked, of all layers, a channel each.
+#if GRID
+@group(1) @binding(8) var voxels: texture_3d<f32>;
 #endif
 
 // How a place is read: what Quality leaves out for speed. Truths read everything at level 0.
@@ -101,6 +116,8 @@ fn domain_exit(p: vec3f, dir: vec3f) -> f32 {
   }
 }
 
+#if MAPLESS
+#else
 fn map_uv(layer: LayerUniforms, p: vec2f, h: f32) -> vec2f {
   return (p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
 }
@@ -139,14 +156,20 @@ fn map_texel(layer: LayerUniforms, p: vec2f, h: f32) -> vec4f {
   return textureSampleLevel(weather_map, linear_repeat, uv, 0.0);
 }
 
-fn weather_at(layer: LayerUniforms, p: vec2f, h: f32) -> Weather {
+// What coverage makes of the map's field at a place; see body_of.
+fn cover_at(layer: LayerUniforms, p: vec2f) -> vec2f {
   var cover = vec2f(layer.body_scale, layer.body_bias);
 #if FRONT
   let ahead = (dot(p, scene.front.xy) - scene.front.w) * scene.front.z + 0.5;
   cover = mix(cover, vec2f(layer.body_scale_beyond, layer.body_bias_beyond), smoothstep(0.0, 1.0, ahead));
 #endif
-  return weather_from_texel(map_texel(layer, p, h), cover);
+  return cover;
 }
+
+fn weather_at(layer: LayerUniforms, p: vec2f, h: f32) -> Weather {
+  return weather_from_texel(map_texel(layer, p, h), cover_at(layer, p));
+}
+#endif
 
 // Where the small noise has faded by this much, nobody sees that it was dragged.
 const CURL_FADE: f32 = 0.4;
@@ -227,6 +250,45 @@ fn thesis_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
 }
 #endif
 
+#if TEXTURE
+fn texture_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
+  let texel = map_texel(layer, p.xz, h);
+  var density = body_of(texel.r, cover_at(layer, p.xz));
+  if (density <= 0.0) {
+    note_clear(layer, p.xz, h);
+    return 0.0;
+  }
+  clear_way = 0.0;
+  density *= height_signal(texel, h);
+  if (density <= 0.0) {
+    return 0.0;
+  }
+  count_read();
+  let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
+  density = costa_shaped(density, textureSampleLevel(shape_noise, linear_repeat, tile, reading.level), layer);
+#if DETAIL
+  if (density > 0.0 && layer.detail_strength > 0.0 && reading.detail) {
+    density = costa_eroded(density, detail_texel(layer, p, h, reading), layer, reading.fade);
+  }
+#endif
+  return costa_density(density, layer);
+}
+#endif
+
+#if GRID
+// The voxels' value at a place: a vertical coordinate 0..1 in their box, and zero outside of it.
+fn voxels_at(p: vec2f, h: f32) -> vec4f {
+  let uv = (p - scene.box_min.xz) / (scene.box_max.xz - scene.box_min.xz);
+  if (any(abs(uv - 0.5) > vec2f(0.5)) || abs(h - 0.5) > 0.5) {
+    return vec4f(0.0);
+  }
+#if COUNT
+  counted_reads += 8u;
+#endif
+  return trilinear(voxels, vec3f(uv.x, h, uv.y));
+}
+#endif
+
 // Density of one layer, 0..1 times the artist's multiplier.
 fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
   let layer = scene.layers[index];
@@ -245,6 +307,17 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
     density = thesis_at(layer, p, h, reading);
   }
 #endif
+#if TEXTURE
+  if (layer.model == MODEL_TEXTURE) {
+    density = texture_at(layer, p, h, reading);
+  }
+#endif
+#if GRID
+  if (layer.model == MODEL_GRID) {
+    density = voxels_at(p.xz, h).x;
+    clear_way = 0.0;
+  }
+#endif
 #if UNIFORM
   if (layer.model == MODEL_UNIFORM) {
     density = weather_at(layer, p.xz, h).body;
@@ -257,11 +330,16 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
 // Densities of all layers at a place.
 fn densities_at(p: vec3f, reading: Reading) -> vec4f {
   let altitude = altitude_of(p);
+#if BAKED
+  clear_way = 0.0;
+  return voxels_at(p.xz, (altitude - scene.box_min.y) / (scene.box_max.y - scene.box_min.y));
+#else
   var densities = vec4f(0.0);
   for (var i = 0u; i < LAYERS; i++) {
     densities[i] = layer_density(i, p, altitude, reading);
   }
   return densities;
+#endif
 }
 
 // Extinction of all layers together, in 1/m.
@@ -282,16 +360,18 @@ fn density_bound(layer: LayerUniforms, greatest_body: f32) -> f32 {
   if (layer.model == MODEL_THESIS) {
     bound = thesis_bound(greatest_body, layer);
   }
+  if (layer.model == MODEL_TEXTURE) {
+    bound = costa_bound(greatest_body, layer);
+  }
   return bound * layer.density_scale;
 }
 
 // Extinction of all layers at a place towards the key light, in 1/m.
 fn shadow_extinction(p: vec3f, reading: Reading) -> f32 {
-  let altitude = altitude_of(p);
+  let densities = densities_at(p, reading);
   var extinction = 0.0;
   for (var i = 0u; i < LAYERS; i++) {
-    let layer = scene.layers[i];
-    extinction += layer_density(i, p, altitude, reading) * layer.extinction_per_m * layer.shadow_extinction_scale;
+    extinction += densities[i] * scene.layers[i].extinction_per_m * scene.layers[i].shadow_extinction_scale;
   }
   return extinction;
 }

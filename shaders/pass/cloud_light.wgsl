@@ -7,10 +7,13 @@
 
 override OCTAVES: u32 = 1u;
 
+#if PLAIN
+#else
 // Behind the scene's uniform: llvmpipe (Mesa 22.3) crashes when a dynamically indexed block is its fourth.
 @group(1) @binding(12) var<uniform> air: AirUniforms;
 @group(0) @binding(6) var sky_transmittance: texture_2d<f32>;
 @group(0) @binding(7) var sky_ambient: texture_2d<f32>;
+#endif
 #if AIR
 @group(0) @binding(8) var sky_aerial_light: texture_3d<f32>;
 @group(0) @binding(9) var sky_aerial_transmittance: texture_3d<f32>;
@@ -34,14 +37,23 @@ fn prepare_light(dir: vec3f) {
       anisotropy *= scene.octave_anisotropy;
     }
   }
-  ambient_above = textureLoad(sky_ambient, vec2u(0u, 0u), 0).rgb * scene.ambient_top;
-  ambient_below = textureLoad(sky_ambient, vec2u(1u, 0u), 0).rgb * scene.ambient_bottom;
+  ambient_above = scene.ambient_top;
+  ambient_below = scene.ambient_bottom;
+#if PLAIN
+#else
+  ambient_above *= textureLoad(sky_ambient, vec2u(0u, 0u), 0).rgb;
+  ambient_below *= textureLoad(sky_ambient, vec2u(1u, 0u), 0).rgb;
+#endif
 }
 
 // The key light's irradiance at a place, cloud left out.
 fn key_light_at(p: vec3f, altitude: f32) -> vec3f {
+#if PLAIN
+  return scene.light_illuminance;
+#else
   let cosine = light_cos_zenith(p, scene.towards_light, scene.planet_radius_m);
   return scene.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
+#endif
 }
 
 // Light of all layers at a place that has cloud, sent to the eye per unit of optical depth: the key light's irradiance

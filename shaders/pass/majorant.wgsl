@@ -2,21 +2,63 @@
 // what delta tracking steps by (Woodcock et al. 1965; Kutz et al., "Spectral and Decomposition Tracking for Rendering
 // Heterogeneous Volumes", 2017).
 #import "cloud/bound.wgsl"
+#import "cloud/voxels.wgsl"
 #import "pass/cloud_field.wgsl"
 
+struct Majorant {
+  // Never below the extinction of all layers anywhere within reach, in 1/m.
+  extinction_per_m: f32,
+  // How far from the place it holds: along the ray for voxels, in every direction for the rest.
+  reach_m: f32,
+}
+
+#if GRID
+// The greatest value of the voxels in cells of them, each with the voxels around it that the value in it depends on.
+@group(1) @binding(19) var voxel_bound: texture_3d<f32>;
+// A cell's value holds for half a voxel beyond it: what a ray goes past the wall into the next, in voxels.
+const PAST_WALL: f32 = 0.1;
+
+fn voxel_majorant(p: vec3f, altitude: f32, dir: vec3f) -> Majorant {
+  let extent = scene.box_max - scene.box_min;
+  let voxel = extent / vec3f(textureDimensions(voxels));
+  let cell = voxel * f32(VOXELS_PER_CELL);
+  let at = vec3f(p.x, altitude, p.z) - scene.box_min;
+  let index = clamp(floor(at / cell), vec3f(0.0), vec3f(textureDimensions(voxel_bound)) - 1.0);
+  // How far along the ray each wall is that it goes towards.
+  let wall = select(index, index + 1.0, dir >= vec3f(0.0)) * cell;
+  let ways = (wall - at) / without_zeros(dir);
+  let past = PAST_WALL * min(voxel.x, min(voxel.y, voxel.z));
+  let greatest = textureLoad(voxel_bound, vec3i(index), 0);
+  var extinction = 0.0;
+#if BAKED
+  for (var i = 0u; i < LAYERS; i++) {
+    extinction += greatest[i] * scene.layers[i].extinction_per_m;
+  }
+#else
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    extinction += select(0.0, greatest.x * layer.density_scale * layer.extinction_per_m, layer.model == MODEL_GRID);
+  }
+#endif
+  return Majorant(extinction, max(min(ways.x, min(ways.y, ways.z)), 0.0) + past);
+}
+#endif
+
+#if MAPLESS
+fn majorant_at(p: vec3f, dir: vec3f) -> Majorant {
+#if GRID
+  return voxel_majorant(p, altitude_of(p), dir);
+#else
+  return Majorant(0.0, FAR_M);
+#endif
+}
+#else
 // The greatest field of the map in cells of four sizes and the cells around them, each half as wide as the one before.
 @group(1) @binding(15) var bound_of_32: texture_2d<f32>;
 @group(1) @binding(16) var bound_of_64: texture_2d<f32>;
 @group(1) @binding(17) var bound_of_128: texture_2d<f32>;
 @group(1) @binding(18) var bound_of_256: texture_2d<f32>;
 const FINEST: u32 = 3u;
-
-struct Majorant {
-  // Never below the extinction of all layers anywhere within reach, in 1/m.
-  extinction_per_m: f32,
-  // How far from the place it holds, in every direction.
-  reach_m: f32,
-}
 
 // Tentative events that a reach may cost before smaller cells are asked.
 const FEW_EVENTS: f32 = 0.7;
@@ -33,6 +75,9 @@ fn density_bound_between(layer: LayerUniforms, body: f32, low: f32, high: f32) -
   }
   if (layer.model == MODEL_THESIS) {
     bound = thesis_bound_between(body, layer, lowest, greatest);
+  }
+  if (layer.model == MODEL_TEXTURE) {
+    bound = costa_bound(body, layer);
   }
   return bound * layer.density_scale;
 }
@@ -68,7 +113,7 @@ fn majorant_of(p: vec3f, altitude: f32, level: u32) -> Majorant {
     let layer = scene.layers[i];
     let low = (altitude - reach - layer.base_m) * layer.per_thickness;
     let high = (altitude + reach - layer.base_m) * layer.per_thickness;
-    if (low < 1.0 && high > 0.0) {
+    if (low < 1.0 && high > 0.0 && layer.model != MODEL_GRID) {
       let uv = map_uv(layer, p.xz, clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0));
       let on_map = select(clamp(uv, vec2f(0.0), vec2f(1.0)), uv - floor(uv), scene.map_edge == EDGE_REPEAT);
       let body = greatest_body(layer, greatest_field(on_map, level));
@@ -79,7 +124,7 @@ fn majorant_of(p: vec3f, altitude: f32, level: u32) -> Majorant {
 }
 
 // From large cells to small ones, until crossing the cell costs few tentative events.
-fn majorant_at(p: vec3f) -> Majorant {
+fn majorant_at(p: vec3f, dir: vec3f) -> Majorant {
   let altitude = altitude_of(p);
   var gap = FAR_M;
   for (var i = 0u; i < LAYERS; i++) {
@@ -93,5 +138,12 @@ fn majorant_at(p: vec3f) -> Majorant {
     }
   }
   // Above or below all layers nothing is nearer than the gap.
-  return Majorant(select(majorant.extinction_per_m, 0.0, gap > majorant.reach_m), max(majorant.reach_m, gap));
+  majorant = Majorant(select(majorant.extinction_per_m, 0.0, gap > majorant.reach_m), max(majorant.reach_m, gap));
+#if GRID
+  let of_voxels = voxel_majorant(p, altitude, dir);
+  majorant.extinction_per_m += of_voxels.extinction_per_m;
+  majorant.reach_m = min(majorant.reach_m, of_voxels.reach_m);
+#endif
+  return majorant;
 }
+#endif

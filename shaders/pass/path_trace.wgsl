@@ -7,7 +7,8 @@
 // places where density exceeds its majorant, paths cut short.
 //
 // Light: the key light through the air by altitude; the sky as it is seen from the clouds; the ground as a Lambertian
-// plain that is lit by both, through the clouds, and seen through the air. Only between the eye and the first scattering
+// plain that is lit by both, through the clouds, and seen through the air. Plain light (PLAIN) has neither air nor ground,
+// and its sky is the ambient light of the scene's uniform. Only between the eye and the first scattering
 // does the air add light, as it does in the march. Artists' gains act once, at the first scattering.
 #import "cloud/phase_sample.wgsl"
 #import "common/camera.wgsl"
@@ -25,11 +26,14 @@
 @group(0) @binding(3) var ground_distance: texture_2d<f32>;
 #endif
 // Behind the scene's uniform: llvmpipe (Mesa 22.3) crashes when a dynamically indexed block is its fourth.
+@group(1) @binding(14) var<uniform> truth: TruthUniforms;
+#if PLAIN
+#else
 @group(1) @binding(12) var<uniform> air: AirUniforms;
 @group(1) @binding(13) var<uniform> cloud_air: AirUniforms;
-@group(1) @binding(14) var<uniform> truth: TruthUniforms;
 @group(0) @binding(6) var sky_transmittance: texture_2d<f32>;
 @group(0) @binding(7) var cloud_sky_view: texture_2d<f32>;
+#endif
 #if AIR
 @group(0) @binding(8) var sky_aerial_light: texture_3d<f32>;
 @group(0) @binding(9) var sky_aerial_transmittance: texture_3d<f32>;
@@ -158,8 +162,21 @@ fn ask_for_light(pending: vec3f, next_dir: vec3f) {
 }
 
 fn key_light_here(altitude: f32) -> vec3f {
+#if PLAIN
+  return scene.light_illuminance;
+#else
   let cosine = light_cos_zenith(path.position, scene.towards_light, scene.planet_radius_m);
   return scene.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
+#endif
+}
+
+// Radiance of the sky in a direction, as seen from the clouds.
+fn sky_here(dir: vec3f) -> vec3f {
+#if PLAIN
+  return vec3f(1.0);
+#else
+  return sky_radiance(cloud_sky_view, linear_repeat, cloud_air, dir);
+#endif
 }
 
 fn scatter(densities: vec4f, extinction: f32, draw: f32) {
@@ -211,8 +228,7 @@ fn air_below(altitude: f32, cosine_above: f32, cosine_ground: f32) -> vec3f {
 fn meet_ground() {
   let altitude = altitude_of(path.position);
   let up_above = up_at(path.position, scene.planet_radius_m);
-  path.light += path.throughput * path.gains.y * scene.ambient_bottom
-    * sky_radiance(cloud_sky_view, linear_repeat, cloud_air, path.dir);
+  path.light += path.throughput * path.gains.y * scene.ambient_bottom * sky_here(path.dir);
   path.position += path.dir * max(plain_distance(path.position, path.dir), 0.0);
   let up = select(vec3f(0.0, 1.0, 0.0), up_at(path.position, scene.planet_radius_m), DOMAIN == DOMAIN_SHELL);
   path.position += up;
@@ -232,8 +248,7 @@ fn leave() {
       fly(path.anchor, path.next_dir);
     }
     case TO_SKY: {
-      path.light += path.throughput * path.gains.y * scene.ambient_top
-        * sky_radiance(cloud_sky_view, linear_repeat, cloud_air, path.dir);
+      path.light += path.throughput * path.gains.y * scene.ambient_top * sky_here(path.dir);
       finish();
     }
 #if EARTH
@@ -310,7 +325,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (path.mode == BEGIN) {
       begin(dir, start, end);
     }
-    let majorant = majorant_at(path.position);
+    let majorant = majorant_at(path.position, path.dir);
     let draws = random2();
     let free_m = select(FAR_M, -log(1.0 - draws.x) / majorant.extinction_per_m, majorant.extinction_per_m > 0.0);
     let reach_m = min(majorant.reach_m, path.left_m);

@@ -8,8 +8,9 @@ fn main(@builtin(global_invocation_id) at: vec3u) {
   let id = vec3u(at.x + at.y * 512u, 0u, 0u);
   if (!is_case(id)) { return; }
   let p = bitcast<vec4f>(cases[id.x].a).xyz;
-  let majorant = majorant_at(p);
-  let q = p + bitcast<vec4f>(cases[id.x].b).xyz * min(majorant.reach_m, 5000.0);
+  let offset = bitcast<vec4f>(cases[id.x].b).xyz;
+  let majorant = majorant_at(p, normalize(offset));
+  let q = p + offset * min(majorant.reach_m, 5000.0);
   let extinction = extinction_of(densities_at(q, Reading(0.0, true, 0.0)));
   store(id, vec4f(majorant.extinction_per_m, majorant.reach_m, extinction, 0.0));
 }

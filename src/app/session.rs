@@ -235,6 +235,6 @@ impl Session {
 pub(super) fn document_of(sky: Sky, quality: Quality) -> Document {
     match sky.origin {
         Origin::Preset(path) => Document::from_file(sky.preset, quality, path),
-        Origin::Builtin(_) | Origin::Picture(_) => Document::new(sky.preset, quality),
+        Origin::Builtin(_) | Origin::Picture(_) | Origin::Grid(_) => Document::new(sky.preset, quality),
     }
 }

@@ -150,6 +150,9 @@ async fn dialog(purpose: &Browse, start: &Path) -> Option<rfd::FileHandle> {
         Browse::Open => dialog.add_filter("Skies", &skies).pick_file().await,
         Browse::SaveAs => dialog.add_filter("Preset", &["ron"]).set_file_name("sky.ron").save_file().await,
         Browse::Export => dialog.add_filter("Pictures", &["exr", "png"]).set_file_name("sky.exr").save_file().await,
+        Browse::Parameter(key) if key.ends_with(".grid") => {
+            dialog.add_filter("Voxel grids", &["npy", "vol"]).pick_file().await
+        }
         Browse::Parameter(_) => dialog.add_filter("Images", &["png", "exr"]).pick_file().await,
     }
 }

@@ -119,7 +119,7 @@ fn cases(args: &BenchArgs) -> Result<Vec<Case>> {
 fn title(sky: &Sky) -> String {
     match &sky.origin {
         Origin::Builtin(name) => (*name).to_owned(),
-        Origin::Preset(path) | Origin::Picture(path) => path.display().to_string(),
+        Origin::Preset(path) | Origin::Picture(path) | Origin::Grid(path) => path.display().to_string(),
     }
 }
 

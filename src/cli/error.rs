@@ -30,7 +30,7 @@ fn code_of(cause: &(dyn std::error::Error + 'static)) -> Option<u8> {
     if let Some(error) = cause.downcast_ref::<RenderError>() {
         return Some(match error {
             RenderError::Gpu(gpu) => code_of_gpu(gpu),
-            RenderError::Map { .. } => FILE,
+            RenderError::Map { .. } | RenderError::Grid { .. } => FILE,
         });
     }
     if let Some(error) = cause.downcast_ref::<GpuError>() {

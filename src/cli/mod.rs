@@ -7,6 +7,7 @@ mod args;
 mod bench;
 mod editor;
 mod error;
+mod grid;
 mod info;
 mod integrate;
 mod json;
@@ -29,7 +30,7 @@ use crate::gpu::AdapterChoice;
 pub struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Sky to open in the editor: a preset (.ron), an exported .exr or .png, or the name of a built-in sky.
+    /// Sky to open in the editor: a preset (.ron), an exported .exr or .png, a voxel grid (.json), or the name of a built-in sky.
     scene: Option<PathBuf>,
     #[command(flatten)]
     edits: Edits,
@@ -53,6 +54,8 @@ enum Command {
     Bench(Box<bench::BenchArgs>),
     /// Measures how far pictures are from the truth, and what that costs.
     Accuracy(Box<accuracy::AccuracyArgs>),
+    /// Bakes clouds into voxels that other renderers read.
+    Grid(grid::GridArgs),
     /// Checks that pictures on this machine keep what the program promises.
     Verify(verify::VerifyArgs),
 }
@@ -91,6 +94,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
+        Some(Command::Grid(args)) => grid::run(&args),
         Some(Command::Verify(args)) => verify::run(&args),
     }
 }

@@ -24,7 +24,7 @@ use crate::scene::{Frame, Output, Preset, Projection, Quality, UpdateFraction};
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArgs {
-    /// A preset (.ron), an exported .exr or .png, or the name of a built-in sky.
+    /// A preset (.ron), an exported .exr or .png, a voxel grid (.json), or the name of a built-in sky.
     scene: PathBuf,
     /// File to write, .png or .exr; `####` in its name stands for the frame number.
     #[arg(short, long, value_name = "FILE")]

@@ -3,6 +3,7 @@
 //! [`crate::scene`] knows text and [`crate::export`] knows pixels; here both meet the file system. The names of map
 //! images are relative to their preset in files, and absolute in memory.
 
+mod grid;
 mod open;
 mod picture;
 
@@ -10,13 +11,15 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
+pub use grid::{VoxelFormat, save_grid};
 pub use open::{Origin, Sky, open};
 pub use picture::{About, save_exr, save_png};
 
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
 use crate::images::ImageError;
-use crate::scene::edit::map_files;
+use crate::images::voxels::VoxelError;
+use crate::scene::edit::files_of;
 use crate::scene::{Preset, PresetError, Quality, quality_from_ron, quality_to_ron};
 
 /// A preset is text of a few kilobytes; a larger file is something else.
@@ -31,6 +34,17 @@ pub enum FileError {
     /// The file system or a picture's encoding failed.
     #[error(transparent)]
     Export(#[from] ExportError),
+    /// A description of a voxel grid was read, but what it says is refused.
+    #[error("{path}: {reason}")]
+    Grid {
+        /// The description.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        reason: String,
+    },
+    /// The voxels that a description names cannot be read.
+    #[error(transparent)]
+    Voxels(#[from] VoxelError),
     /// The file is too large to be a preset.
     #[error("{path} has more than 4 MiB, which no preset has; check the path")]
     TooLarge {
@@ -95,7 +109,7 @@ impl Preset {
     pub fn load(path: &Path) -> Result<Self, FileError> {
         let mut preset = Self::from_ron(&read_text(path)?, &path.display().to_string())?;
         let folder = folder_of(path);
-        for name in map_files(&mut preset.scene.weather.layers) {
+        for name in files_of(&mut preset.scene) {
             *name = folder.join(&*name).display().to_string();
         }
         Ok(preset)
@@ -107,7 +121,7 @@ impl Preset {
     /// If the file cannot be written.
     pub fn save(&self, path: &Path) -> Result<(), FileError> {
         let (mut preset, folder) = (self.clone(), folder_of(path));
-        for name in map_files(&mut preset.scene.weather.layers) {
+        for name in files_of(&mut preset.scene) {
             if let Ok(relative) = Path::new(&*name).strip_prefix(&folder) {
                 *name = relative.display().to_string();
             }

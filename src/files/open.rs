@@ -1,15 +1,15 @@
-//! Opens a sky by any of its names: a built-in preset, a preset file, or a picture with a preset inside.
+//! Opens a sky by any of its names: a built-in preset, a preset file, a picture with a preset inside, or a voxel grid.
 
 use std::path::{Path, PathBuf};
 
-use super::{FileError, folder_of};
+use super::{FileError, folder_of, grid};
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
 use crate::export::exr::EmbeddedFile;
 use crate::export::preset::read_preset;
 use crate::images::sha256_hex;
 use crate::scene::builtin::{self, BUILTINS};
-use crate::scene::edit::map_files;
+use crate::scene::edit::files_of;
 use crate::scene::nearest::did_you_mean;
 use crate::scene::{Preset, Quality, quality_from_ron};
 
@@ -22,6 +22,8 @@ pub enum Origin {
     Preset(PathBuf),
     /// A picture.
     Picture(PathBuf),
+    /// The description of a voxel grid.
+    Grid(PathBuf),
 }
 
 /// An opened sky.
@@ -45,6 +47,7 @@ pub fn open(source: &Path) -> Result<Sky, FileError> {
     let extension = source.extension().and_then(|extension| extension.to_str()).map(str::to_lowercase);
     match extension.as_deref() {
         Some("exr" | "png") => open_picture(source),
+        Some("json") => Ok(sky(grid::open(source)?, None, Origin::Grid(source.to_owned()))),
         None if !source.is_file() => {
             let builtin = builtin::find(name).ok_or_else(|| FileError::UnknownSky {
                 name: source.display().to_string(),
@@ -69,7 +72,7 @@ fn open_picture(path: &Path) -> Result<Sky, FileError> {
         Some(text) => Some(quality_from_ron(text, &format!("{shown}, quality"))?),
         None => None,
     };
-    for name in map_files(&mut preset.scene.weather.layers) {
+    for name in files_of(&mut preset.scene) {
         *name = map_of_picture(path, name, &embedded.files)?.display().to_string();
     }
     Ok(sky(preset, quality, Origin::Picture(path.to_owned())))

@@ -10,8 +10,8 @@ use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME};
 use crate::export::png::{PngPixels, write_png};
 use crate::images::FloatImage;
 use crate::render::LinearImage;
-use crate::scene::edit::map_files;
-use crate::scene::{Camera, PRESET_VERSION, Preset, Projection, Quality, direction, quality_to_ron};
+use crate::scene::edit::files_of;
+use crate::scene::{Camera, PRESET_VERSION, Preset, Projection, Quality, quality_to_ron};
 
 /// What a picture shows and how it was computed.
 #[derive(Clone, Copy, Debug)]
@@ -78,7 +78,7 @@ pub fn save_exr(
 fn portable(preset: &Preset) -> (Preset, Vec<EmbeddedFile>) {
     let mut preset = preset.clone();
     let mut files: Vec<EmbeddedFile> = Vec::new();
-    for name in map_files(&mut preset.scene.weather.layers) {
+    for name in files_of(&mut preset.scene) {
         let stem = Path::new(&*name).file_name().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let bytes = std::fs::read(&*name).ok();
         *name = stem;
@@ -102,18 +102,15 @@ fn matrices(camera: &Camera, size: [u32; 2]) -> Option<[Mat4; 2]> {
     if camera.projection != Projection::Perspective {
         return None;
     }
-    let forward = direction(camera.pitch_deg, camera.heading_deg);
-    let right = direction(0.0, camera.heading_deg + 90.0);
-    let up = right.cross(forward);
+    let [forward, right, up] = camera.axes();
     let eye = Vec3::new(camera.east_m, camera.height_m, camera.south_m);
     let row = |axis: Vec3| axis.extend(-axis.dot(eye));
     let to_camera = Mat4::from_cols(row(right), row(up), row(forward), Vec4::W).transpose();
-    let tangent = (camera.field_of_view_deg.to_radians() * 0.5).tan();
-    let aspect = size[0] as f32 / size[1] as f32;
+    let [across, high] = camera.half_tangents(size);
     // x / z and −y / z fall on 0 ..= 1 from the top left; the third coordinate is 1 − 1 m / z.
     let to_ndc = Mat4::from_cols(
-        Vec4::new(0.5 / (tangent * aspect), 0.0, 0.0, 0.0),
-        Vec4::new(0.0, -0.5 / tangent, 0.0, 0.0),
+        Vec4::new(0.5 / across, 0.0, 0.0, 0.0),
+        Vec4::new(0.0, -0.5 / high, 0.0, 0.0),
         Vec4::new(0.5, 0.5, 1.0, 1.0),
         Vec4::new(0.0, 0.0, -1.0, 0.0),
     );

@@ -29,15 +29,21 @@ impl Texture {
         if width > limit || height > limit {
             return Err(GpuError::TooLarge { what: "an image", width, height, limit });
         }
-        Ok(Self::new(gpu, label, [width, height, 1], (1, format)))
+        Ok(Self::new(gpu, label, [width, height, 1], (1, format), wgpu::TextureDimension::D2))
     }
 
-    /// A cube of `side`³ texels with `levels` mip levels.
-    pub fn new_3d(gpu: &Gpu, label: &str, side: [u32; 3], (levels, format): (u32, wgpu::TextureFormat)) -> Self {
-        Self::new(gpu, label, side, (levels, format))
+    /// Texels in three dimensions with `levels` mip levels.
+    pub fn new_3d(gpu: &Gpu, label: &str, size: [u32; 3], levels: (u32, wgpu::TextureFormat)) -> Self {
+        Self::new(gpu, label, size, levels, wgpu::TextureDimension::D3)
     }
 
-    fn new(gpu: &Gpu, label: &str, size: [u32; 3], (levels, format): (u32, wgpu::TextureFormat)) -> Self {
+    fn new(
+        gpu: &Gpu,
+        label: &str,
+        size: [u32; 3],
+        (levels, format): (u32, wgpu::TextureFormat),
+        dimension: wgpu::TextureDimension,
+    ) -> Self {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d {
@@ -47,7 +53,7 @@ impl Texture {
             },
             mip_level_count: levels,
             sample_count: 1,
-            dimension: if size[2] > 1 { wgpu::TextureDimension::D3 } else { wgpu::TextureDimension::D2 },
+            dimension,
             format,
             usage: Self::USAGE,
             view_formats: &[],

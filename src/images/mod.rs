@@ -4,6 +4,7 @@
 
 pub mod map;
 pub mod pattern;
+pub mod voxels;
 
 use std::io;
 use std::path::{Path, PathBuf};

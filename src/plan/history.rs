@@ -83,6 +83,7 @@ impl HistoryKey {
         let lens = Camera {
             projection: frame.scene.camera.projection,
             field_of_view_deg: frame.scene.camera.field_of_view_deg,
+            field_of_view_axis: frame.scene.camera.field_of_view_axis,
             ..Camera::default()
         };
         Self {

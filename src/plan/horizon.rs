@@ -1,6 +1,6 @@
 //! Which rows of a picture lie wholly above the ground.
 
-use crate::scene::{Frame, Projection, direction};
+use crate::scene::{Frame, Projection};
 
 /// Distance from the world's origin at which relief begins, and by which ranges and hills have risen; as
 /// `pass/terrain.wgsl` has them.
@@ -46,17 +46,16 @@ pub(super) fn open_rows(frame: &Frame<'_>) -> u32 {
     let camera = &frame.scene.camera;
     let [width, height] = frame.render_size();
     let limit = highest_ground(frame).atan();
-    let half = (f64::from(camera.field_of_view_deg) * 0.5).to_radians().tan();
-    let forward = direction(camera.pitch_deg, camera.heading_deg).as_dvec3();
-    let right = direction(0.0, camera.heading_deg + 90.0).as_dvec3();
-    let up = right.cross(forward);
+    let [across, half] = camera.half_tangents([width, height]).map(f64::from);
+    let [forward, right, up] = camera.axes().map(|axis| axis.as_dvec3());
+    // The lower end of a tilted row is the one on the side that the tilt lowers.
+    let edge = right * across * if right.y > 0.0 { -1.0 } else { 1.0 };
     let lowest_elevation = |row: u32| {
         // At the lower edge of its pixels: samples lie anywhere in them.
         let v = f64::from(row + 1) / f64::from(height);
         match camera.projection {
             Projection::Perspective => {
                 // In a row above the horizon rays at its ends are the lowest.
-                let edge = right * half * f64::from(width) / f64::from(height);
                 (forward + edge - up * half * (2.0 * v - 1.0)).normalize().y.asin()
             }
             Projection::Equirect => (0.5 - v) * std::f64::consts::PI,

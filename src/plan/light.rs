@@ -52,6 +52,9 @@ impl Lighting {
     /// The lights of a scene.
     #[allow(clippy::cast_possible_truncation, reason = "the range of f32 is ample for a scale")]
     pub fn new(scene: &Scene) -> Self {
+        if scene.plain_light.enabled {
+            return Self::plain(scene);
+        }
         let towards_sun = scene.towards_sun();
         let towards_moon = scene.towards_moon();
         let sun_lux = tint(scene.sun.colour) * scene.sun.illuminance_klx * 1e3;
@@ -70,6 +73,23 @@ impl Lighting {
         let night = f64::from(moon_lux.dot(LUMINANCE)) + 1e-3;
         let candela_per_unit = ((daylight + night) / 16.0) as f32;
         Self { key, towards_key, key_lux, towards_sun, towards_moon, sun_lux, moon_lux, candela_per_unit }
+    }
+
+    /// A sun that shines from wherever it is told, in units of its own: pictures hold them as they are.
+    fn plain(scene: &Scene) -> Self {
+        let light = &scene.plain_light;
+        let irradiance = light.sun_colour.vec() * light.sun_irradiance;
+        let towards_sun = scene.towards_sun();
+        Self {
+            key: if irradiance.max_element() > 0.0 { KeyLight::Sun } else { KeyLight::None },
+            towards_key: towards_sun,
+            key_lux: irradiance,
+            towards_sun,
+            towards_moon: Vec3::NEG_Y,
+            sun_lux: irradiance,
+            moon_lux: Vec3::ZERO,
+            candela_per_unit: 1.0,
+        }
     }
 }
 
@@ -91,6 +111,19 @@ mod tests {
         let mut scene = Scene::default();
         scene.sun.elevation_deg = -30.0;
         scene.moon.enabled = false;
+        assert_eq!(Lighting::new(&scene).key, KeyLight::None);
+    }
+
+    #[test]
+    fn plain_light_is_as_given() {
+        let mut scene = Scene::default();
+        scene.sun.elevation_deg = -60.0;
+        scene.plain_light.enabled = true;
+        scene.plain_light.sun_irradiance = 7.0;
+        let lighting = Lighting::new(&scene);
+        assert_eq!((lighting.key, lighting.key_lux), (KeyLight::Sun, Vec3::splat(7.0)), "from below as well");
+        assert_eq!((lighting.candela_per_unit, lighting.moon_lux), (1.0, Vec3::ZERO));
+        scene.plain_light.sun_irradiance = 0.0;
         assert_eq!(Lighting::new(&scene).key, KeyLight::None);
     }
 

@@ -45,6 +45,8 @@ pub struct GroundPlan {
 pub struct FramePlan {
     /// The light that is marched towards.
     pub key: KeyLight,
+    /// Whether light comes from a plain sun and sky, with no air and no ground.
+    pub plain: bool,
     /// Whether stars are drawn.
     pub stars: bool,
     /// The ground, where any can be seen.
@@ -81,7 +83,8 @@ impl FramePlan {
         let sunshafts = sunshafts(frame, march.is_some() || ground.is_some(), &lighting, &mut why);
         Self {
             key: lighting.key,
-            stars: stars(&lighting, &mut why),
+            plain: plain(scene, &mut why),
+            stars: stars(&lighting, scene.plain_light.enabled, &mut why),
             ground,
             march,
             temporal,
@@ -104,6 +107,12 @@ impl FramePlan {
     }
 }
 
+fn plain(scene: &Scene, why: &mut Reasons) -> bool {
+    let plain = scene.plain_light.enabled;
+    why.either(!plain, "sky tables", "the light comes through air", "the light is plain: there is no air");
+    plain
+}
+
 fn ground(frame: &Frame<'_>, lighting: &Lighting, why: &mut Reasons) -> Option<GroundPlan> {
     let ground = &frame.scene.ground;
     let camera = &frame.scene.camera;
@@ -114,6 +123,10 @@ fn ground(frame: &Frame<'_>, lighting: &Lighting, why: &mut Reasons) -> Option<G
         Projection::Dome => 0.0,
     };
     let relief_angle_deg = if relief_m > 0.0 { 35.0 } else { 0.0 };
+    if frame.scene.plain_light.enabled {
+        why.no("ground", "the light is plain");
+        return None;
+    }
     if !ground.visible {
         why.no("ground", "it is switched off");
         return None;
@@ -183,6 +196,8 @@ fn sunshafts(frame: &Frame<'_>, has_occluder: bool, lighting: &Lighting, why: &m
     };
     let because = if scene.sunshafts.strength <= 0.0 {
         "their strength is 0".to_owned()
+    } else if scene.plain_light.enabled {
+        "there is no air".to_owned()
     } else if lighting.key == KeyLight::None || lighting.towards_key.y < -0.02 {
         "the light is below the horizon".to_owned()
     } else if !has_occluder {
@@ -199,17 +214,16 @@ fn sunshafts(frame: &Frame<'_>, has_occluder: bool, lighting: &Lighting, why: &m
     None
 }
 
-fn stars(lighting: &Lighting, why: &mut Reasons) -> bool {
-    let night = lighting.towards_sun.y < -0.12;
-    why.either(night, "stars", "the sun is far below the horizon", "the sky is too bright");
+fn stars(lighting: &Lighting, plain: bool, why: &mut Reasons) -> bool {
+    let night = lighting.towards_sun.y < -0.12 && !plain;
+    why.either(night, "stars", "the sun is far below the horizon", "the sky is too bright, or plain");
     night
 }
 
 /// Half the angle across the picture's diagonal.
 fn half_diagonal_deg(frame: &Frame<'_>) -> f32 {
-    let [width, height] = frame.render_size().map(|side| side as f32);
-    let tan = (frame.scene.camera.field_of_view_deg * 0.5).to_radians().tan();
-    (tan * (1.0 + (width / height).powi(2)).sqrt()).atan().to_degrees()
+    let [across, up] = frame.scene.camera.half_tangents(frame.render_size());
+    across.hypot(up).atan().to_degrees()
 }
 
 fn angle_off_view_deg(scene: &Scene, towards: glam::Vec3) -> f32 {

@@ -4,6 +4,9 @@ use super::reasons::Reasons;
 use super::{KeyLight, Lighting};
 use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, MapEdge, Output, Scene};
 
+/// Fewest voxels across a baked box; half as many upwards have to be more than one.
+const LEAST_VOXELS: u32 = 4;
+
 /// The compiled form of the march: the key of its pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MarchVariant {
@@ -19,6 +22,16 @@ pub struct MarchVariant {
     pub thesis: bool,
     /// Some layer is uniform.
     pub uniform: bool,
+    /// Some layer has Costa's model, which reads the large noise as well.
+    pub texture: bool,
+    /// Some layer is the voxels of a file.
+    pub grid: bool,
+    /// All layers are read from voxels that were baked before, so many from west to east.
+    pub baked: Option<u32>,
+    /// No layer reads the weather map.
+    pub mapless: bool,
+    /// Light comes from a plain sun and sky.
+    pub plain: bool,
     /// Some layer reads the small noise.
     pub detail: bool,
     /// Some layer reads the curl noise.
@@ -37,8 +50,10 @@ pub struct MarchVariant {
 
 impl MarchVariant {
     /// Every flag the cloud shaders know.
-    pub const FLAGS: [&'static str; 10] =
-        ["PROFILE", "THESIS", "UNIFORM", "DETAIL", "CURL", "FRONT", "AIR", "GROUND", "FLOAT", "SKIP"];
+    pub const FLAGS: [&'static str; 15] = [
+        "PROFILE", "THESIS", "UNIFORM", "TEXTURE", "GRID", "BAKED", "MAPLESS", "DETAIL", "CURL", "FRONT", "PLAIN",
+        "AIR", "GROUND", "FLOAT", "SKIP",
+    ];
 
     /// The variant a frame needs, or `None` when no cloud can be in it.
     pub(super) fn new(frame: &Frame<'_>, ground: bool, lighting: &Lighting, why: &mut Reasons) -> Option<Self> {
@@ -59,20 +74,26 @@ impl MarchVariant {
         let lit = lighting.key != KeyLight::None;
         let octaves = if lit { frame.quality.octaves } else { 0 };
         why.either(octaves > 0, "scattering octaves", format!("{octaves} on top of the first"), "only the first order");
-        let air = scene.air.aerial_perspective && frame.output != Output::CloudsAlone;
+        let plain = scene.plain_light.enabled;
+        let air = scene.air.aerial_perspective && frame.output != Output::CloudsAlone && !plain;
         why.either(
             air,
             "aerial perspective",
             "air lies before the clouds",
-            "it is switched off, or clouds stand alone",
+            "it is switched off, or clouds stand alone, or there is none",
         );
+        let baked = baked(frame, why);
+        let mapless = layers.iter().all(|layer| !layer.reads_map());
         let repeats = scene.weather.edge == MapEdge::Repeat;
-        let skip = repeats && frame.quality.empty_stride > 1.0 && any(|layer| layer.model != DensityModel::Uniform);
+        let skip = repeats
+            && baked.is_none()
+            && frame.quality.empty_stride > 1.0
+            && any(|layer| !matches!(layer.model, DensityModel::Uniform | DensityModel::Grid));
         why.either(
             skip,
             "empty-space skipping",
             "the map says where nothing is",
-            "every step is short, or the map ends",
+            "every step is short, or the map ends, or voxels are read",
         );
         Some(Self {
             layers: u32::try_from(layers.len()).unwrap_or(1),
@@ -81,8 +102,13 @@ impl MarchVariant {
             profile: any(|layer| layer.model == DensityModel::Profile),
             thesis: any(|layer| layer.model == DensityModel::Thesis),
             uniform: any(|layer| layer.model == DensityModel::Uniform),
-            detail: detail && any(|layer| layer.model != DensityModel::Uniform),
-            curl: curl && any(|layer| layer.model != DensityModel::Uniform),
+            texture: any(|layer| layer.model == DensityModel::Texture),
+            grid: any(|layer| layer.model == DensityModel::Grid),
+            baked,
+            mapless,
+            plain,
+            detail,
+            curl,
             front,
             air,
             ground,
@@ -91,26 +117,61 @@ impl MarchVariant {
         })
     }
 
+    /// Whether some layer reads the large noise.
+    pub fn reads_shape(self) -> bool {
+        self.profile || self.texture
+    }
+
+    /// What programs read: the baked voxels alone, where there are any.
+    fn seen(self) -> Self {
+        if self.baked.is_none() {
+            return self;
+        }
+        Self {
+            profile: false,
+            thesis: false,
+            uniform: false,
+            texture: false,
+            grid: true,
+            mapless: true,
+            detail: false,
+            curl: false,
+            front: false,
+            ..self
+        }
+    }
+
+    /// The form that bakes the voxels: every layer as it is.
+    pub fn to_bake(self) -> Self {
+        Self { baked: None, skip: false, ..self }
+    }
+
     /// Parts of the shader that add a binding are switched by text, or the layout would still need them.
     pub fn flags(self) -> impl Iterator<Item = &'static str> {
+        let seen = self.seen();
         let on = [
-            self.profile,
-            self.thesis,
-            self.uniform,
-            self.detail,
-            self.curl,
-            self.front,
-            self.air,
-            self.ground,
-            self.float,
-            self.skip,
+            seen.profile,
+            seen.thesis,
+            seen.uniform,
+            seen.texture,
+            seen.grid,
+            seen.baked.is_some(),
+            seen.mapless,
+            seen.detail,
+            seen.curl,
+            seen.front,
+            seen.plain,
+            seen.air,
+            seen.ground,
+            seen.float,
+            seen.skip,
         ];
         Self::FLAGS.into_iter().zip(on).filter_map(|(flag, on)| on.then_some(flag))
     }
 
     /// The flags that decide how the density field is read, for other passes that read it.
     pub fn field_flags(self) -> impl Iterator<Item = &'static str> {
-        self.flags().filter(|flag| !matches!(*flag, "AIR" | "GROUND" | "FLOAT" | "SKIP"))
+        self.flags().filter(|flag| !matches!(*flag, "PLAIN" | "AIR" | "GROUND" | "FLOAT" | "SKIP"))
     }
 
     /// Numbers the compiler should know.
@@ -121,6 +182,16 @@ impl MarchVariant {
             DomainKind::Box => 2,
         }
     }
+}
+
+/// Voxels from west to east where all layers are to be read from baked ones.
+fn baked(frame: &Frame<'_>, why: &mut Reasons) -> Option<u32> {
+    let voxels = frame.quality.grid_voxels;
+    let is_box = frame.scene.domain.kind == DomainKind::Box;
+    let baked = (voxels > 0 && is_box).then_some(voxels.max(LEAST_VOXELS));
+    let because = if voxels == 0 { "the field is read as it is" } else { "only a box can be baked" };
+    why.either(baked.is_some(), "baked voxels", format!("{voxels} of them across"), because);
+    baked
 }
 
 fn no_cloud(scene: &Scene) -> &'static str {

@@ -4,7 +4,7 @@ use super::blue_noise;
 use super::context::{Bound, Context, Extent};
 use super::uniforms::other::ReliefUniforms;
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
-use crate::plan::FramePlan;
+use crate::plan::{FramePlan, MarchVariant};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const SHAPE_SIDE: u32 = 128;
@@ -58,8 +58,8 @@ impl Bakes {
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
         let march = plan.march;
-        let wants = |test: fn(crate::plan::MarchVariant) -> bool| march.is_some_and(test);
-        noise_3d(context, &mut self.shape, wants(|march| march.profile), &SHAPE, jobs)?;
+        let wants = |test: fn(MarchVariant) -> bool| march.is_some_and(test);
+        noise_3d(context, &mut self.shape, wants(MarchVariant::reads_shape), &SHAPE, jobs)?;
         noise_3d(context, &mut self.worley, wants(|march| march.thesis), &WORLEY, jobs)?;
         noise_3d(context, &mut self.detail, wants(|march| march.detail), &DETAIL, jobs)?;
         if !wants(|march| march.curl) {
@@ -134,17 +134,17 @@ impl Bakes {
 /// The programs that make what a plan calls for.
 pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
     let march = plan.march;
-    let wants = |test: fn(crate::plan::MarchVariant) -> bool| march.is_some_and(test);
+    let wants = |test: fn(MarchVariant) -> bool| march.is_some_and(test);
     let all = [
-        (SHAPE.file, wants(|march| march.profile)),
+        (SHAPE.file, wants(MarchVariant::reads_shape)),
         (WORLEY.file, wants(|march| march.thesis)),
         (DETAIL.file, wants(|march| march.detail)),
         ("pass/bake_curl.wgsl", wants(|march| march.curl)),
-        ("pass/bake_mip.wgsl", march.is_some()),
+        ("pass/bake_mip.wgsl", wants(|march| march.reads_shape() || march.thesis || march.detail)),
         ("pass/bake_terrain.wgsl", plan.ground.is_some_and(|ground| ground.terrain)),
-        ("pass/weather_map.wgsl", march.is_some()),
+        ("pass/weather_map.wgsl", wants(|march| !march.mapless)),
         ("pass/weather_bound.wgsl", wants(|march| march.skip)),
-        ("pass/weather_blend.wgsl", march.is_some()),
+        ("pass/weather_blend.wgsl", wants(|march| !march.mapless)),
     ];
     all.into_iter().filter(|(_, wanted)| *wanted).map(|(file, _)| ProgramKey::plain(file)).collect()
 }

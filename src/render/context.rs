@@ -70,6 +70,11 @@ impl Extent {
         Self { size: [side; 3], group: [4; 3], first_row: 0 }
     }
 
+    /// Texels in three dimensions, in groups of 4×4×4.
+    pub(super) fn solid(size: [u32; 3]) -> Self {
+        Self { size, group: [4; 3], first_row: 0 }
+    }
+
     /// The same without its first rows.
     pub(super) fn below(self, first_row: u32) -> Self {
         Self { first_row, ..self }
@@ -79,9 +84,9 @@ impl Extent {
         [0, 1, 2].map(|axis| self.size[axis].div_ceil(self.group[axis]))
     }
 
-    /// The axis that bands cut: the last one with more than one invocation.
+    /// The axis that bands cut: the last one.
     fn band_axis(self) -> usize {
-        if self.size[2] > 1 { 2 } else { 1 }
+        if self.group[2] > 1 { 2 } else { 1 }
     }
 }
 

@@ -18,6 +18,7 @@ mod still;
 mod targets;
 pub mod truth;
 pub mod uniforms;
+mod voxels;
 mod weather;
 
 use std::collections::VecDeque;
@@ -32,6 +33,7 @@ use context::Pace;
 use pass::sky::SkyTables;
 use targets::Targets;
 use uniforms::Eye;
+use voxels::Voxels;
 use weather::WeatherMap;
 
 pub use output::{Counts, LinearImage};
@@ -39,8 +41,8 @@ pub use still::Still;
 
 /// Every program that a frame of this plan may ask for, bakes and the clear sky included.
 pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
-    let sky = pass::sky::programs().into_iter();
-    sky.chain(bakes::programs(plan)).chain(passes::programs(plan, true)).collect()
+    let sky = pass::sky::programs().into_iter().filter(|_| !plan.plain);
+    sky.chain(bakes::programs(plan)).chain(voxels::programs(plan)).chain(passes::programs(plan, true)).collect()
 }
 
 /// Why a picture could not be made.
@@ -49,6 +51,14 @@ pub enum RenderError {
     /// The device or a shader failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// The voxels that the scene names cannot be used.
+    #[error("layers.{layer}.grid: {message}")]
+    Grid {
+        /// Index of the cloud layer.
+        layer: usize,
+        /// What is wrong and what to do.
+        message: String,
+    },
     /// An image that the scene names cannot be used.
     #[error("weather.layers.{layer}.image: {message}")]
     Map {
@@ -116,6 +126,7 @@ pub struct Renderer {
     sky: SkyTables,
     bakes: Bakes,
     weather: WeatherMap,
+    voxels: Voxels,
     targets: Option<Targets>,
     history: Option<History>,
     /// The last finished picture.
@@ -146,6 +157,7 @@ impl Renderer {
             sky: SkyTables::new(gpu)?,
             bakes: Bakes::new(gpu)?,
             weather: WeatherMap::new(),
+            voxels: Voxels::default(),
             targets: None,
             history: None,
             shown: None,
@@ -220,6 +232,7 @@ impl Renderer {
 
     /// Device memory held by textures, in bytes.
     pub fn memory_bytes(&self) -> u64 {
-        self.bakes.bytes() + self.weather.bytes() + self.sky.bytes() + self.targets.as_ref().map_or(0, Targets::bytes)
+        let targets = self.targets.as_ref().map_or(0, Targets::bytes);
+        self.bakes.bytes() + self.weather.bytes() + self.voxels.bytes() + self.sky.bytes() + targets
     }
 }

@@ -13,6 +13,7 @@ pub(super) struct FrameBuffers {
     pub(super) scene: wgpu::Buffer,
     pub(super) ground: wgpu::Buffer,
     pub(super) display: wgpu::Buffer,
+    pub(super) plain: Option<wgpu::Buffer>,
     pub(super) shafts: Option<wgpu::Buffer>,
 }
 
@@ -24,9 +25,8 @@ impl FrameBuffers {
             ("ground", self.ground.as_entire_binding()),
             ("display", self.display.as_entire_binding()),
         ];
-        if let Some(shafts) = &self.shafts {
-            bound.push(("shafts", shafts.as_entire_binding()));
-        }
+        let optional = [("plain", &self.plain), ("shafts", &self.shafts)];
+        bound.extend(optional.iter().filter_map(|(name, buffer)| Some((*name, buffer.as_ref()?.as_entire_binding()))));
         bound
     }
 }
@@ -88,6 +88,9 @@ pub(super) fn programs(plan: &FramePlan, with_history: bool) -> Vec<ProgramKey> 
 
 /// The background with whatever the plan says of the ground, or of rows that lie above it.
 fn background_key(plan: &FramePlan, is_open: bool) -> ProgramKey {
+    if plan.plain {
+        return ProgramKey::plain("pass/background_plain.wgsl").with_flags(plan.float.then_some("FLOAT"));
+    }
     let ground = plan.ground.filter(|_| !is_open);
     let on = [
         ("GROUND", ground.is_some()),

@@ -7,6 +7,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::context::{Bound, Context};
 use super::passes::{FrameBuffers, Passes};
 use super::targets::{Targets, ray_count};
+use super::uniforms::other::PlainUniforms;
 use super::uniforms::scene::ViewUniforms;
 use super::uniforms::{self, Eye};
 use super::{History, Pending, RenderError, Renderer};
@@ -80,16 +81,22 @@ impl Renderer {
         let scene = frame.scene;
         let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms };
         let mut jobs = Vec::new();
-        let sky = uniforms::sky_inputs(scene, &Lighting::new(scene));
-        self.sky.update(&self.gpu, &self.programs, &sky, &mut jobs)?;
+        if !plan.plain {
+            let sky = uniforms::sky_inputs(scene, &Lighting::new(scene));
+            self.sky.update(&self.gpu, &self.programs, &sky, &mut jobs)?;
+        }
         self.bakes.update(&context, plan, scene.ground.seed, &mut jobs)?;
-        match plan.march {
+        match plan.march.filter(|march| !march.mapless) {
             Some(march) => {
                 self.weather.update(&context, &scene.weather, frame.time_secs, &mut jobs)?;
-                self.weather.update_bounds(&context, (march.skip, plan.tracks), &mut jobs)?;
+                let tracks = plan.tracks && march.baked.is_none();
+                self.weather.update_bounds(&context, (march.skip, tracks), &mut jobs)?;
             }
             None => self.weather.clear(),
         }
+        let mut read_by_bake = self.bakes.resources();
+        read_by_bake.extend(self.weather.resources());
+        self.voxels.update(&context, (frame, plan), &read_by_bake, &mut jobs)?;
         Ok(jobs)
     }
 
@@ -98,6 +105,7 @@ impl Renderer {
         let mut shared = self.bakes.resources();
         shared.extend(self.sky.resources());
         shared.extend(self.weather.resources());
+        shared.extend(self.voxels.resources());
         shared
     }
 }
@@ -119,6 +127,9 @@ pub(super) fn frame_buffers(
         scene: uniform("scene", bytemuck::bytes_of(&uniforms::scene_uniforms(frame, &lighting, &eye))),
         ground: uniform("ground", bytemuck::bytes_of(&uniforms::ground_uniforms(scene, &lighting, &eye, shadow_px))),
         display: uniform("display", bytemuck::bytes_of(&uniforms::display_uniforms(scene, &lighting))),
+        plain: uniforms::plain_sky(scene).map(|sky_radiance| {
+            context.gpu.uniform("plain", bytemuck::bytes_of(&PlainUniforms { sky_radiance, pad0: 0.0 }))
+        }),
         shafts: plan.sunshafts.map(|samples| {
             let shafts = uniforms::shaft_uniforms(scene, &lighting, samples);
             context.gpu.uniform("shafts", bytemuck::bytes_of(&shafts))
@@ -128,7 +139,7 @@ pub(super) fn frame_buffers(
 
 /// Whether a picture still says anything about the next one.
 fn is_continued(history: &History, key: &HistoryKey, frame: &Frame<'_>, eye: &Eye) -> bool {
-    let looked = |eye: &Eye| direction(eye.heading_pitch_deg[1], eye.heading_pitch_deg[0]);
+    let looked = |eye: &Eye| direction(eye.turned_deg[1], eye.turned_deg[0]);
     let turned_too_far =
         looked(&history.eye).dot(looked(eye)) < CUT_COSINE && frame.scene.camera.projection == Projection::Perspective;
     let carried = uniforms::wind_mps(&frame.scene.wind).length() * (frame.time_secs - history.time_secs).abs();
@@ -163,7 +174,7 @@ pub(super) fn view_uniforms(
     });
     let height = size[1] as f32;
     let pixel_angle = match scene.camera.projection {
-        Projection::Perspective => 2.0 * (scene.camera.field_of_view_deg * 0.5).to_radians().tan() / height,
+        Projection::Perspective => 2.0 * scene.camera.half_tangents(size)[1] / height,
         Projection::Equirect => std::f32::consts::PI / height,
         Projection::Dome => std::f32::consts::FRAC_PI_2 / height,
     };

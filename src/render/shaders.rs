@@ -2,7 +2,8 @@
 
 use super::uniforms::air::AirUniforms;
 use super::uniforms::other::{
-    BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, ReliefUniforms, ShaftUniforms, TruthUniforms,
+    BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, PlainUniforms, ReliefUniforms, ShaftUniforms,
+    TruthUniforms,
 };
 use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
 use crate::gpu::ShaderTable;
@@ -10,8 +11,9 @@ use crate::gpu::ShaderTable;
 /// All flags and structs.
 pub const TABLE: ShaderTable = ShaderTable {
     flags: &[
-        "AIR", "ALONE", "BELOW", "CLOUDS", "COUNT", "CURL", "DETAIL", "EARTH", "FLOAT", "FRONT", "GROUND", "HISTORY",
-        "OPEN", "PATHS", "PROFILE", "SAMPLES", "SHADOW", "SHAFTS", "SKIP", "STARS", "TERRAIN", "THESIS", "UNIFORM",
+        "AIR", "ALONE", "BAKED", "BELOW", "CLOUDS", "COUNT", "CURL", "DETAIL", "EARTH", "FLOAT", "FRONT", "GRID",
+        "GROUND", "HISTORY", "MAPLESS", "OPEN", "PATHS", "PLAIN", "PROFILE", "SAMPLES", "SHADOW", "SHAFTS", "SINGLE",
+        "SKIP", "STARS", "TERRAIN", "TEXTURE", "THESIS", "UNIFORM",
     ],
     structs: &[
         AirUniforms::GENERATED,
@@ -22,6 +24,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         GroundUniforms::GENERATED,
         LayerUniforms::GENERATED,
         MapUniforms::GENERATED,
+        PlainUniforms::GENERATED,
         TruthUniforms::GENERATED,
         ReliefUniforms::GENERATED,
         SceneUniforms::GENERATED,

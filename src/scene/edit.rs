@@ -3,7 +3,7 @@
 use super::bounds::{Fault, colour_fault, count_fault, float_fault, range_phrase};
 use super::nearest::did_you_mean;
 use super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
-use super::{MAX_LAYERS, MapLayer, Quality, Scene};
+use super::{MAX_LAYERS, Quality, Scene};
 
 /// Why a parameter was not set. The scene is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -406,9 +406,10 @@ impl Visitor for RangeCheck {
     }
 }
 
-/// Visits every image file that a weather map names, empty names left out.
-pub fn map_files(layers: &mut [MapLayer]) -> impl Iterator<Item = &mut String> {
-    layers.iter_mut().map(|layer| &mut layer.image.0).filter(|name| !name.is_empty())
+/// Visits every file that a scene names, images of its weather map and voxel grids; empty names left out.
+pub fn files_of(scene: &mut Scene) -> impl Iterator<Item = &mut String> {
+    let maps = scene.weather.layers.iter_mut().map(|layer| &mut layer.image.0);
+    maps.chain(scene.layers.iter_mut().map(|layer| &mut layer.grid.0)).filter(|name| !name.is_empty())
 }
 
 #[cfg(test)]
@@ -466,7 +467,7 @@ mod tests {
             (
                 "layers.0.model",
                 "thesis",
-                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform",
+                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform, Texture, Grid",
             ),
             ("layers.3.base_m", "1", "layers: the list has 1 item(s), so the index may be at most 1"),
             (

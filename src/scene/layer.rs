@@ -1,5 +1,6 @@
 //! Cloud layers: where they are, what shapes them, and what they do to light.
 
+use super::param::FileName;
 use crate::{choices, params};
 
 choices! {
@@ -11,6 +12,10 @@ choices! {
         Thesis ("Thesis"),
         /// The same everywhere the map has cloud: fog, haze, and tests against closed forms.
         Uniform ("Uniform"),
+        /// Coverage, height and altitude from one image, with the noises of Costa 2023, section 3.1.
+        Texture ("Weather texture"),
+        /// Voxels of a file, in a box.
+        Grid ("Voxel grid"),
     }
 }
 
@@ -53,6 +58,8 @@ params! {
         enabled: bool = true;
         /// How the layer turns the weather map into density.
         model: DensityModel = DensityModel::Profile;
+        /// File of a voxel grid, .npy or .vol; its greatest value is density 1. For that model only.
+        grid: FileName = FileName::default();
         /// Height of the cloud base above sea level.
         base_m: f32 = 1200.0, 0.0..=15_000.0, Metres;
         /// Greatest height of the cloud tops above sea level.
@@ -114,6 +121,16 @@ impl CloudLayer {
         self.enabled && self.density > 0.0 && self.extinction_per_m() > 0.0 && self.top_m - self.base_m >= 1.0
     }
 
+    /// Whether it can hold cloud where the weather map covers so much at most.
+    pub fn is_covered(&self, greatest_coverage: f32) -> bool {
+        !self.reads_map() || greatest_coverage + self.coverage_offset > 0.0
+    }
+
+    /// Whether the weather map says where its clouds are.
+    pub fn reads_map(&self) -> bool {
+        self.model != DensityModel::Grid
+    }
+
     /// Light lost per metre at full density.
     pub fn extinction_per_m(&self) -> f32 {
         self.scattering_per_m + self.absorption_per_m
@@ -121,7 +138,7 @@ impl CloudLayer {
 
     /// Whether the small noise is read.
     pub fn has_detail(&self) -> bool {
-        self.detail_strength > 0.0
+        self.detail_strength > 0.0 && !matches!(self.model, DensityModel::Uniform | DensityModel::Grid)
     }
 
     /// Whether curl noise drags the small noise.

@@ -100,6 +100,23 @@ params! {
 }
 
 params! {
+    /// The light that other renderers have: a sun and a constant sky, and no air, no ground, no moon. Clouds can be compared
+    /// under it.
+    pub struct PlainLight ("Plain light") {
+        /// Whether it replaces the light of sun, moon and air. The sun's place stays.
+        enabled: bool = false;
+        /// Irradiance of the sun on a surface that faces it, in any unit; radiances of a picture are in the same.
+        sun_irradiance: f32 = 3.0, 0.0..=1_000_000.0, None, logarithmic;
+        /// Factor of the sun's irradiance by colour.
+        sun_colour: Colour = Colour::WHITE;
+        /// Radiance of the sky, the same from all directions.
+        sky_radiance: f32 = 0.3, 0.0..=1_000_000.0, None, logarithmic;
+        /// Factor of the sky's radiance by colour.
+        sky_colour: Colour = Colour(0.55, 0.75, 1.0);
+    }
+}
+
+params! {
     /// Streaks of light in the haze, added after the picture is drawn.
     pub struct Sunshafts ("Sunshafts") {
         /// Strength of the streaks. 0 removes the pass.

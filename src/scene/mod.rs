@@ -22,8 +22,8 @@ mod weather;
 
 pub use frame::{Frame, Output};
 pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
-pub use light::{Air, Moon, Scattering, Sun, SunPlacement, Sunshafts};
-pub use place::{Camera, Display, Domain, DomainKind, Ground, Projection, ToneMap};
+pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};
+pub use place::{Camera, Display, Domain, DomainKind, FieldOfViewAxis, Ground, Projection, ToneMap};
 pub use preset::{PRESET_VERSION, Preset, PresetError, quality_from_ron, quality_to_ron};
 pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
 pub use weather::{MapEdge, MapLayer, MapSource, Weather, Wind};
@@ -50,6 +50,8 @@ params! {
         scattering: Scattering = Scattering::default();
         /// The clear air.
         air: Air = Air::default();
+        /// Light without any air.
+        plain_light: PlainLight = PlainLight::default();
         /// Streaks of light.
         sunshafts: Sunshafts = Sunshafts::default();
         /// The ground.
@@ -76,6 +78,17 @@ impl Scene {
                 self.weather.layers.len()
             ));
         }
+        let mut grids = self.layers.iter().enumerate().filter(|(_, layer)| layer.model == DensityModel::Grid);
+        if let Some((index, _)) = grids.next()
+            && self.domain.kind != DomainKind::Box
+        {
+            problems.push(format!(
+                "layers.{index}.model is Grid, which fills a box; set domain.kind to Box, or choose another model"
+            ));
+        }
+        if let Some((index, _)) = grids.next() {
+            problems.push(format!("layers.{index}.model is Grid, but only one layer can be a voxel grid"));
+        }
         for (index, layer) in self.layers.iter().enumerate() {
             if layer.top_m < layer.base_m {
                 problems.push(format!(
@@ -87,13 +100,26 @@ impl Scene {
         problems
     }
 
+    /// Changes as little as makes all rules hold.
+    pub fn mend(&mut self) {
+        self.layers.truncate(MAX_LAYERS);
+        self.weather.layers.truncate(MAX_LAYERS);
+        let mut has_grid = false;
+        for layer in &mut self.layers {
+            layer.top_m = layer.top_m.max(layer.base_m);
+            if layer.model == DensityModel::Grid && std::mem::replace(&mut has_grid, true) {
+                layer.model = CloudLayer::default().model;
+            }
+        }
+        if has_grid {
+            self.domain.kind = DomainKind::Box;
+        }
+    }
+
     /// The layers that can hold any cloud.
     pub fn visible_layers(&self) -> impl Iterator<Item = &CloudLayer> {
         let coverage = self.weather.greatest_coverage();
-        self.layers
-            .iter()
-            .take(MAX_LAYERS)
-            .filter(move |layer| layer.is_visible() && coverage + layer.coverage_offset > 0.0)
+        self.layers.iter().take(MAX_LAYERS).filter(move |layer| layer.is_visible() && layer.is_covered(coverage))
     }
 
     /// Unit vector towards the sun.
@@ -141,5 +167,21 @@ mod tests {
         let problems = scene.problems();
         assert!(problems.len() == 1 && problems[0].contains("layers.0.top_m"), "{problems:?}");
         assert_eq!(scene.visible_layers().count(), 0, "and holds no cloud");
+        scene.mend();
+        assert!(scene.problems().is_empty(), "{:?}", scene.problems());
+    }
+
+    #[test]
+    fn a_voxel_grid_needs_a_box_of_its_own() {
+        let mut scene = Scene::default();
+        scene.layers[0].model = DensityModel::Grid;
+        assert!(scene.problems()[0].contains("domain.kind"), "{:?}", scene.problems());
+        scene.domain.kind = DomainKind::Box;
+        scene.weather.coverage = 0.0;
+        assert_eq!((scene.problems().len(), scene.visible_layers().count()), (0, 1), "whatever the map covers");
+        scene.layers.push(scene.layers[0].clone());
+        assert!(scene.problems()[0].contains("layers.1.model"), "{:?}", scene.problems());
+        scene.mend();
+        assert!(scene.problems().is_empty() && scene.layers[0].model == DensityModel::Grid, "{scene:?}");
     }
 }

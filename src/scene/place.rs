@@ -1,5 +1,8 @@
 //! The world around the clouds: its shape, the ground, and the eye.
 
+use glam::Vec3;
+
+use super::direction;
 use super::param::Colour;
 use crate::{choices, params};
 
@@ -67,6 +70,16 @@ choices! {
     }
 }
 
+choices! {
+    /// The side of a picture that the field of view spans.
+    pub enum FieldOfViewAxis {
+        /// From its lower to its upper edge.
+        Vertical ("Vertical"),
+        /// From its left to its right edge.
+        Horizontal ("Horizontal"),
+    }
+}
+
 params! {
     /// The eye.
     pub struct Camera ("Camera") {
@@ -82,8 +95,48 @@ params! {
         heading_deg: f32 = 0.0, 0.0..=360.0, Degrees;
         /// Direction of view above the horizon.
         pitch_deg: f32 = 14.0, -90.0..=90.0, Degrees;
-        /// Vertical field of view.
+        /// Tilt about the direction of view; positive lowers the right side. Only a lens tilts.
+        roll_deg: f32 = 0.0, -180.0..=180.0, Degrees;
+        /// Field of view of a lens.
         field_of_view_deg: f32 = 50.0, 1.0..=150.0, Degrees;
+        /// The side of the picture that the field of view spans.
+        field_of_view_axis: FieldOfViewAxis = FieldOfViewAxis::Vertical;
+    }
+}
+
+impl Camera {
+    /// Tangents of half the angles that a lens spans, across and up a picture of this size.
+    pub fn half_tangents(&self, [width, height]: [u32; 2]) -> [f32; 2] {
+        let tangent = (self.field_of_view_deg * 0.5).to_radians().tan();
+        let aspect = width as f32 / height as f32;
+        match self.field_of_view_axis {
+            FieldOfViewAxis::Vertical => [tangent * aspect, tangent],
+            FieldOfViewAxis::Horizontal => [tangent, tangent / aspect],
+        }
+    }
+
+    /// Unit vectors into the middle of the picture, to its right and up.
+    pub fn axes(&self) -> [Vec3; 3] {
+        let forward = direction(self.pitch_deg, self.heading_deg);
+        let level = direction(0.0, self.heading_deg + 90.0);
+        let upright = level.cross(forward);
+        if self.projection != Projection::Perspective || self.roll_deg == 0.0 {
+            return [forward, level, upright];
+        }
+        let (sine, cosine) = self.roll_deg.to_radians().sin_cos();
+        [forward, level * cosine - upright * sine, upright * cosine + level * sine]
+    }
+
+    /// Turns it towards a direction, with `up` as near to the picture's up as can be. Neither may be zero.
+    pub fn look(&mut self, forward: Vec3, up: Vec3) {
+        let forward = forward.normalize();
+        self.pitch_deg = forward.y.clamp(-1.0, 1.0).asin().to_degrees();
+        let is_vertical = forward.x.hypot(forward.z) < 1e-6;
+        let heading = if is_vertical { 0.0 } else { forward.x.atan2(-forward.z).to_degrees() };
+        self.heading_deg = heading.rem_euclid(360.0);
+        self.roll_deg = 0.0;
+        let [_, right, upright] = self.axes();
+        self.roll_deg = up.dot(right).atan2(up.dot(upright)).to_degrees();
     }
 }
 
@@ -112,5 +165,41 @@ params! {
         saturation: f32 = 1.12, 0.0..=2.0, None;
         /// Contrast of the tone-mapped picture.
         contrast: f32 = 1.12, 0.5..=2.0, None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_looks_where_it_is_told() {
+        let mut camera = Camera::default();
+        for (forward, up) in [
+            (Vec3::new(0.3, -0.2, -0.8), Vec3::Y),
+            (Vec3::new(-0.5, 0.1, 0.7), Vec3::Z),
+            (Vec3::NEG_Y, Vec3::X),
+            (Vec3::Y, Vec3::new(1.0, 0.0, 1.0)),
+            (Vec3::X, Vec3::NEG_Y),
+        ] {
+            camera.look(forward, up);
+            let [ahead, right, upright] = camera.axes();
+            assert!(ahead.abs_diff_eq(forward.normalize(), 1e-6), "{ahead} instead of {forward}");
+            let wanted = (up - ahead * up.dot(ahead)).normalize();
+            assert!(upright.abs_diff_eq(wanted, 1e-5), "{upright} instead of {wanted}");
+            assert!(right.cross(ahead).abs_diff_eq(upright, 1e-6), "right-handed: {right}");
+            assert!((0.0..=360.0).contains(&camera.heading_deg), "{}", camera.heading_deg);
+        }
+        camera.look(Vec3::NEG_Z, Vec3::new(0.5, 1.0, 0.0));
+        assert!(camera.roll_deg > 0.0 && camera.axes()[1].y < 0.0, "a tilt to the right lowers the right side");
+    }
+
+    #[test]
+    fn the_field_of_view_spans_the_side_it_names() {
+        let mut camera = Camera { field_of_view_deg: 90.0, ..Camera::default() };
+        assert!((camera.half_tangents([200, 100])[1] - 1.0).abs() < 1e-6, "up");
+        camera.field_of_view_axis = FieldOfViewAxis::Horizontal;
+        let [across, up] = camera.half_tangents([200, 100]);
+        assert!((across - 1.0).abs() < 1e-6 && (up - 0.5).abs() < 1e-6, "across: {across}, {up}");
     }
 }

@@ -73,6 +73,8 @@ params! {
         detail_distance_m: f32 = 20_000.0, 100.0..=500_000.0, Metres, logarithmic;
         /// Coarser (above 0) or finer mip levels of the noises with distance.
         noise_level_bias: f32 = 0.0, -4.0..=4.0, None;
+        /// Voxels across a box into which the density of all its clouds is baked before it is read, half as many upwards (Costa 2023, table 10). 0 reads the field as it is.
+        grid_voxels: u32 = 0, 0..=512, None;
         /// Share of pixels computed anew in a frame.
         update: UpdateFraction = UpdateFraction::Sixteenth;
         /// Order in which pixels take their turn.

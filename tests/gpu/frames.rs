@@ -135,13 +135,15 @@ fn random_sky(seed: u32) -> (Scene, Quality) {
     let (domain, models): (DomainKind, &[DensityModel]) = match seed % 4 {
         0 => (DomainKind::Shell, &[DensityModel::Profile, DensityModel::Thesis]),
         1 => (DomainKind::Flat, &[DensityModel::Profile]),
-        2 => (DomainKind::Box, &[DensityModel::Thesis]),
+        2 => (DomainKind::Box, &[DensityModel::Texture, DensityModel::Grid]),
         _ => (DomainKind::Shell, &[DensityModel::Uniform]),
     };
     scene.domain.kind = domain;
+    scene.plain_light.enabled = domain == DomainKind::Box;
     scene.layers.resize_with(models.len(), Default::default);
     for (layer, model) in scene.layers.iter_mut().zip(models) {
         (layer.enabled, layer.model) = (true, *model);
+        layer.grid.0 = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/ball.npy").to_owned();
     }
     (scene, quality)
 }

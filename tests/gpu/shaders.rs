@@ -73,6 +73,7 @@ fn reachable() -> BTreeMap<String, ProgramKey> {
             let plan = FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output });
             keys.extend(programs(&plan));
             keys.extend(truth::programs(&plan));
+            keys.extend(programs(&FramePlan { tracks: true, ..plan }));
         }
     }
     let counted = keys.iter().filter(|key| key.file == "pass/march.wgsl").map(|key| key.clone().with_flags(["COUNT"]));

@@ -43,20 +43,19 @@ pub fn without(mask: &[bool], left_out: &[bool]) -> Option<Vec<bool>> {
 
 /// Height of a pixel in the middle of the picture, in radians.
 fn pixel_rad(camera: &Camera, size: [u32; 2]) -> f32 {
-    let whole_deg = match camera.projection {
-        Projection::Perspective => camera.field_of_view_deg,
-        Projection::Equirect => 180.0,
-        Projection::Dome => 90.0,
+    let whole_rad = match camera.projection {
+        Projection::Perspective => 2.0 * camera.half_tangents(size)[1].atan(),
+        Projection::Equirect => std::f32::consts::PI,
+        Projection::Dome => std::f32::consts::FRAC_PI_2,
     };
-    whole_deg.to_radians() / size[1].max(1) as f32
+    whole_rad / size[1].max(1) as f32
 }
 
 /// Unit vectors through the middles of the pixels, row by row; what `ray_through` is in the shaders.
 fn directions(camera: &Camera, [width, height]: [u32; 2]) -> impl Iterator<Item = Vec3> {
-    let forward = direction(camera.pitch_deg, camera.heading_deg);
-    let right = direction(0.0, camera.heading_deg + 90.0);
-    let tan = (camera.field_of_view_deg * 0.5).to_radians().tan();
-    let (right_edge, up_edge) = (right * tan * width as f32 / height.max(1) as f32, right.cross(forward) * tan);
+    let [forward, right, up] = camera.axes();
+    let [across, high] = camera.half_tangents([width, height.max(1)]);
+    let (right_edge, up_edge) = (right * across, up * high);
     let (projection, heading_deg) = (camera.projection, camera.heading_deg);
     (0..height).flat_map(move |row| {
         (0..width).map(move |column| {

@@ -168,11 +168,13 @@ impl Renderer {
         bound.extend(buffers.resources());
         let mut seen = None;
         if truth.integrator == Integrator::PathTraced {
-            let (view, air, job) = self.sky.seen_from(gpu, &self.programs, sky, sky.cloud_altitude_m)?;
-            truth.prepare.push_back(job);
             truth.variance =
                 Some(Texture::new_2d(gpu, "variance", truth.targets.size(), wgpu::TextureFormat::Rgba32Float)?);
-            seen = Some((view, air));
+            if !march.plain {
+                let (view, air, job) = self.sky.seen_from(gpu, &self.programs, sky, sky.cloud_altitude_m)?;
+                truth.prepare.push_back(job);
+                seen = Some((view, air));
+            }
         }
         if let Some((view, air)) = &seen {
             bound.push(("cloud_sky_view", view_of(view)));
@@ -209,7 +211,7 @@ impl Renderer {
 fn program(integrator: Integrator, march: MarchVariant) -> ProgramKey {
     let flags = march.flags().filter(|flag| !matches!(*flag, "FLOAT" | "SKIP"));
     if integrator == Integrator::PathTraced {
-        field_key("pass/path_trace.wgsl", march).with_flags(flags).with_flags(["EARTH"])
+        field_key("pass/path_trace.wgsl", march).with_flags(flags).with_flags((!march.plain).then_some("EARTH"))
     } else {
         field_key("pass/converged.wgsl", march).with_flags(flags).with_constant("OCTAVES", march.octaves)
     }

@@ -3,35 +3,31 @@
 use glam::{DVec3, Vec3};
 
 use super::scene::CameraUniforms;
-use crate::scene::{Camera, Projection, direction};
+use crate::scene::{Camera, Projection};
 
 /// Where the eye is and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Eye {
     /// Position in the world in metres: east, height, south.
     pub(crate) position: DVec3,
-    /// Direction of view in degrees: heading and pitch.
-    pub(crate) heading_pitch_deg: [f32; 2],
+    /// Direction of view in degrees: heading, pitch and roll.
+    pub(crate) turned_deg: [f32; 3],
 }
 
 impl Eye {
     pub(crate) fn new(camera: &Camera) -> Self {
         let position = DVec3::new(camera.east_m.into(), camera.height_m.into(), camera.south_m.into());
-        Self { position, heading_pitch_deg: [camera.heading_deg, camera.pitch_deg] }
+        Self { position, turned_deg: [camera.heading_deg, camera.pitch_deg, camera.roll_deg] }
     }
 }
 
 /// The camera as shaders take it, `eye` seen from the sea-level point below `origin`.
 pub(crate) fn camera_uniforms(camera: &Camera, size: [u32; 2], eye: &Eye, origin: &Eye) -> CameraUniforms {
-    let [heading_deg, pitch_deg] = eye.heading_pitch_deg;
-    let forward = direction(pitch_deg, heading_deg);
-    let right = direction(0.0, heading_deg + 90.0);
-    let up = right.cross(forward);
-    let aspect = size[0] as f32 / size[1] as f32;
-    let tan = (camera.field_of_view_deg * 0.5).to_radians().tan();
-    let (scale_right, scale_up) = match camera.projection {
-        Projection::Perspective => (tan * aspect, tan),
-        Projection::Equirect | Projection::Dome => (1.0, 1.0),
+    let [heading_deg, pitch_deg, roll_deg] = eye.turned_deg;
+    let [forward, right, up] = Camera { heading_deg, pitch_deg, roll_deg, ..camera.clone() }.axes();
+    let [scale_right, scale_up] = match camera.projection {
+        Projection::Perspective => camera.half_tangents(size),
+        Projection::Equirect | Projection::Dome => [1.0, 1.0],
     };
     let offset = eye.position - origin.position;
     CameraUniforms {

@@ -4,8 +4,10 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 
 use super::camera::Eye;
 use super::scene::{LayerUniforms, SceneUniforms};
-use crate::plan::Lighting;
-use crate::scene::{CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, MapSource, PhaseKind, Scene, Wind};
+use crate::plan::{KeyLight, Lighting};
+use crate::scene::{
+    Camera, CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, MapSource, PhaseKind, Quality, Scene, Wind,
+};
 
 /// Velocity of the wind: east in x, south in y.
 pub(crate) fn wind_mps(wind: &Wind) -> DVec2 {
@@ -46,12 +48,13 @@ fn noise_from_world(size_m: f32, eye: &Eye, drift_m: DVec3) -> Vec4 {
 /// Scale and offset that make a body of the map's field where clouds cover a share of the sky.
 ///
 /// The thesis's coverage is the radius of the cells (Koblížek 2019, section 2.1.1): clouds grow round their middles, which
-/// stay as deep as ever. The others lower a threshold under the field, whose edge is as soft as the layer says.
+/// stay as deep as ever; and so is that of a weather texture, whose red is itself at coverage 1. The others lower a
+/// threshold under the field, whose edge is as soft as the layer says.
 fn body(layer: &CloudLayer, coverage: f32) -> (f32, f32) {
     let coverage = (coverage + layer.coverage_offset).clamp(0.0, 1.0);
     match layer.model {
-        DensityModel::Thesis if coverage > 0.0 => (1.0 / coverage, 1.0 - 1.0 / coverage),
-        DensityModel::Thesis => (0.0, 0.0),
+        DensityModel::Thesis | DensityModel::Texture if coverage > 0.0 => (1.0 / coverage, 1.0 - 1.0 / coverage),
+        DensityModel::Thesis | DensityModel::Texture | DensityModel::Grid => (0.0, 0.0),
         DensityModel::Profile | DensityModel::Uniform => {
             let softness = layer.edge_softness;
             (1.0 / softness, -(1.0 - coverage * (1.0 + softness)) / softness)
@@ -59,12 +62,18 @@ fn body(layer: &CloudLayer, coverage: f32) -> (f32, f32) {
     }
 }
 
+/// As far as nothing lies.
+const BEYOND_ALL_M: f32 = 1e7;
+
 /// How far from a place the map's bound there holds in every direction.
 ///
 /// The bound covers the place's cell and those around it, so a cell's width is safe on the map, less the texels that
 /// linear filtering reaches beyond it. A layer that leans shifts its map by `lean · h²`, at most 2 `lean` over its
 /// thickness for each metre of height.
 fn bound_reach_m(scene: &Scene, layer: &CloudLayer, thickness_m: f32) -> f32 {
+    if !layer.reads_map() {
+        return BEYOND_ALL_M;
+    }
     let cell_m = scene.weather.size_m * layer.map_scale / super::super::weather::CELLS as f32;
     0.9 * cell_m / (1.0 + 2.0 * layer.lean_m / thickness_m)
 }
@@ -112,6 +121,8 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
             DensityModel::Profile => 0,
             DensityModel::Thesis => 1,
             DensityModel::Uniform => 2,
+            DensityModel::Texture => 3,
+            DensityModel::Grid => 4,
         },
         phase_kind: match layer.phase.kind {
             PhaseKind::Isotropic => 0,
@@ -138,6 +149,30 @@ fn front(scene: &Scene, eye: &Eye, time_secs: f64) -> Vec4 {
     Vec4::new(upwind.x as f32, upwind.y as f32, 1.0 / scene.weather.front_width_m, distance as f32)
 }
 
+/// Radiance of the sky where the light is plain.
+pub(crate) fn plain_sky(scene: &Scene) -> Option<Vec3> {
+    let light = &scene.plain_light;
+    light.enabled.then(|| light.sky_colour.vec() * light.sky_radiance)
+}
+
+/// What voxels of the clouds depend on: everything the shaders are told but the eye, the light, and how they march.
+pub(crate) fn field_uniforms(frame: &Frame<'_>) -> SceneUniforms {
+    let origin = Camera { height_m: frame.scene.camera.height_m, ..Camera::default() };
+    let quality = Quality::default();
+    let field = Frame { quality: &quality, ..*frame };
+    let dark = Lighting {
+        key: KeyLight::None,
+        towards_key: Vec3::Y,
+        key_lux: Vec3::ZERO,
+        towards_sun: Vec3::Y,
+        towards_moon: Vec3::Y,
+        sun_lux: Vec3::ZERO,
+        moon_lux: Vec3::ZERO,
+        candela_per_unit: 1.0,
+    };
+    scene_uniforms(&field, &dark, &Eye::new(&origin))
+}
+
 /// Everything the cloud shaders are told.
 pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) -> SceneUniforms {
     let (scene, quality) = (frame.scene, frame.quality);
@@ -157,14 +192,15 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         Vec3::new(x as f32, height, z as f32)
     };
     let light = &scene.scattering;
+    let sky = plain_sky(scene).unwrap_or(Vec3::ONE);
     SceneUniforms {
         towards_light: lighting.towards_key,
         planet_radius_m: domain.planet_radius_m,
         light_illuminance: lighting.key_lux / lighting.candela_per_unit,
         lowest_m,
-        ambient_top: light.ambient_top.vec() * light.ambient,
+        ambient_top: light.ambient_top.vec() * light.ambient * sky,
         highest_m,
-        ambient_bottom: light.ambient_bottom.vec() * light.ambient,
+        ambient_bottom: light.ambient_bottom.vec() * light.ambient * sky,
         ambient_base_share: light.ambient_base_share,
         box_min: corner(-1.0, lowest_m),
         ambient_occlusion: light.ambient_occlusion,

@@ -12,7 +12,7 @@ pub mod other;
 pub mod scene;
 
 pub(super) use camera::{Eye, camera_uniforms};
-pub(super) use clouds::{scene_uniforms, wind_mps};
+pub(super) use clouds::{field_uniforms, plain_sky, scene_uniforms, wind_mps};
 pub(super) use ground::ground_uniforms;
 
 use super::pass::sky::SkyInputs;

@@ -95,6 +95,14 @@ gpu_struct! {
         pub pad2: u32,
     }
 
+    /// What lies behind the clouds in plain light.
+    pub struct PlainUniforms {
+        /// The same from all directions.
+        pub sky_radiance: Vec3,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+    }
+
     /// Streaks of light.
     pub struct ShaftUniforms {
         /// Unit vector towards the light.

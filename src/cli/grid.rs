@@ -1,0 +1,89 @@
+//! `grid`: the clouds of a sky as voxels, for other renderers.
+
+use std::path::PathBuf;
+
+use anyhow::Result;
+use clap::{Args, ValueEnum};
+
+use super::error::Usage;
+use super::{Device, Edits, args, print};
+use crate::files::{self, VoxelFormat, save_grid};
+use crate::gpu::Gpu;
+use crate::render::Renderer;
+use crate::scene::{DomainKind, Frame, Output, Quality, edit};
+
+#[derive(Debug, Args)]
+pub(super) struct GridArgs {
+    /// A preset (.ron), an exported .exr or .png, a voxel grid (.json), or the name of a built-in sky. Its box is baked, or
+    /// the clouds of its shell where the box stands.
+    scene: PathBuf,
+    /// Description to write, .json; the voxels are written beside it.
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Voxels from west to east and from north to south; half as many upwards.
+    #[arg(long, default_value = "128", value_parser = clap::value_parser!(u32).range(4..=512))]
+    voxels: u32,
+    /// Format of the voxels.
+    #[arg(long, default_value = "npy")]
+    format: Format,
+    /// Seconds since the scene began.
+    #[arg(long, value_parser = args::finite, default_value = "0", value_name = "SECONDS", allow_negative_numbers = true)]
+    time: f64,
+    #[command(flatten)]
+    edits: Edits,
+    #[command(flatten)]
+    device: Device,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// `NumPy`.
+    Npy,
+    /// Mitsuba.
+    Vol,
+    /// Both of them.
+    Both,
+}
+
+/// The size of picture for which the camera is described.
+const PICTURE: [u32; 2] = [1920, 1080];
+
+pub(super) fn run(args: &GridArgs) -> Result<()> {
+    if args.output.extension().is_none_or(|extension| extension != "json") {
+        return Err(Usage(format!("-o {} does not end in .json", args.output.display())).into());
+    }
+    let mut preset = files::open(&args.scene)?.preset;
+    let mut quality = Quality { grid_voxels: args.voxels, ..Quality::default() };
+    preset.scene.domain.kind = DomainKind::Box;
+    edit::apply(&args.edits.sets, &mut preset.scene, &mut quality)?;
+    let gpu = Gpu::headless(&args.device.choice())?;
+    let mut renderer = Renderer::new(&gpu)?;
+    let frame =
+        Frame { scene: &preset.scene, quality: &quality, size: PICTURE, time_secs: args.time, output: Output::Linear };
+    let Some((grid, bounds)) = renderer.bake_extinction(&frame)? else {
+        return Err(Usage(format!("{} has no cloud to bake: {}", preset.name, no_cloud(&frame))).into());
+    };
+    let format = match args.format {
+        Format::Npy => VoxelFormat::Npy,
+        Format::Vol => VoxelFormat::Vol,
+        Format::Both => VoxelFormat::Both,
+    };
+    let written = save_grid(&args.output, (&grid, bounds), &preset, (format, PICTURE))?;
+    let [x, y, z] = grid.size();
+    let filled = grid.values().iter().filter(|value| **value > 0.0).count() as f64 / grid.values().len() as f64;
+    let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+    print(&format!(
+        "{}: {x} x {y} x {z} voxels, {:.1} % with cloud, greatest extinction {:.4} 1/m\n",
+        names.join(", "),
+        100.0 * filled,
+        grid.greatest()
+    ))
+}
+
+/// Why a frame's clouds are not baked.
+fn no_cloud(frame: &Frame<'_>) -> String {
+    let plan = crate::plan::FramePlan::new(frame);
+    let reason =
+        plan.reasons.into_iter().find(|reason| matches!(reason.effect, "clouds" | "baked voxels") && !reason.runs);
+    reason.map_or_else(|| "its layers are empty".to_owned(), |reason| reason.because)
+}
