@@ -20,8 +20,16 @@ fn type_of_cell(id: u32, map: MapUniforms) -> vec3f {
   return vec3f(1.0, 0.0, 0.0);
 }
 
-fn map_texel_at(uv: vec2f, map: MapUniforms) -> vec4f {
-  let p = vec3f(uv, map.phase);
+struct MapField {
+  // How deep inside a cloud, 0..1; the share of places above 1 - c is about c.
+  depth: f32,
+  // The cell that the place belongs to.
+  cell: u32,
+  // Slow variation, 0..1.
+  region: f32,
+}
+
+fn map_field_at(p: vec3f, map: MapUniforms) -> MapField {
   let cells = i32(map.large_cells);
   let region = clamp(perlin_fbm(p, 3, 4, map.seed * 16u) * 1.1 + 0.5, 0.0, 1.0);
   let large = worley_cell(p, cells, map.seed * 16u + 5u);
@@ -35,6 +43,22 @@ fn map_texel_at(uv: vec2f, map: MapUniforms) -> vec4f {
   let size = smoothstep(middle - 0.15, middle + 0.15, region);
   let cellular = mix(puffs * 0.92, fields * 1.06, size);
   let field = mix(cellular, region, 0.8 * map.contrast) + fray * 0.63 * map.fray;
-  let variation = smoothstep(0.3, 0.75, region);
-  return vec4f(spread_evenly(field) * type_of_cell(large.id, map), variation);
+  return MapField(spread_evenly(field), large.id, region);
+}
+
+// The channels of cloud/weather.wgsl.
+fn map_texel_at(uv: vec2f, map: MapUniforms) -> vec4f {
+  let field = map_field_at(vec3f(uv, map.phase), map);
+  return vec4f(field.depth * type_of_cell(field.cell, map), smoothstep(0.3, 0.75, field.region));
+}
+
+// The channels of cloud/costa.wgsl: Perlin noise makes bases less polished and tops diverse (Costa 2023, section 3.1.1).
+// Altitude and height together stay below 1.
+fn weather_texture_at(uv: vec2f, map: MapUniforms) -> vec4f {
+  let p = vec3f(uv, map.phase);
+  let field = map_field_at(p, map);
+  let rough = clamp(perlin_fbm(p, 12, 3, map.seed * 16u + 12u) + 0.5, 0.0, 1.0);
+  let altitude = 0.3 * smoothstep(0.25, 0.8, rough);
+  let height = (0.25 + 0.45 * smoothstep(0.3, 0.75, field.region) + 0.3 * rough) * sqrt(field.depth);
+  return vec4f(field.depth, min(height, 1.0 - altitude), altitude, 0.0);
 }

@@ -15,5 +15,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   if (any(texel >= size) || id.y >= band.rows) {
     return;
   }
-  textureStore(map_out, texel, map_texel_at((vec2f(texel) + 0.5) / vec2f(size), map));
+  let uv = (vec2f(texel) + 0.5) / vec2f(size);
+  if (map.is_weather_texture == 1u) {
+    textureStore(map_out, texel, weather_texture_at(uv, map));
+  } else {
+    textureStore(map_out, texel, map_texel_at(uv, map));
+  }
 }

@@ -1,6 +1,7 @@
 // Evaluates cloud/{weather,profile,thesis,map_field}.wgsl. Case: a = texel of the weather map; b = large noise;
-// c = small noise; d = h, fade, bias. The layer of each case is in an array of its own. For `eval_map`: a = uv, phase;
+// c = small noise; d = h, fade, bias. The layer of each case is in an array of its own. For `eval_map`: a = uv, phase, 1 for a weather texture;
 // b = seed, large cells as integers, small share, fray; c = contrast and the weights of the types.
+#import "cloud/costa.wgsl"
 #import "cloud/map_field.wgsl"
 #import "cloud/profile.wgsl"
 #import "cloud/thesis.wgsl"
@@ -68,6 +69,17 @@ fn place(id: vec3u) -> Place {
     select(0.0, 1.0, thesis_near_surface(field, at.layer))));
 }
 
+// After the large noise, the density, its bound, and the bound of the coverage alone.
+@compute @workgroup_size(64) fn eval_costa(@builtin(global_invocation_id) id: vec3u) {
+  if (!is_case(id)) { return; }
+  let at = place(id);
+  let texel = bitcast<vec4f>(cases[id.x].a);
+  let coverage = body_of(texel.r, vec2f(at.layer.body_scale, bitcast<vec4f>(cases[id.x].d).z));
+  let shaped = costa_shaped(coverage * height_signal(texel, at.h), at.large, at.layer);
+  let density = costa_density(costa_eroded(shaped, at.small, at.layer, at.fade), at.layer);
+  store(id, vec4f(shaped, density, costa_bound(coverage, at.layer), 0.0));
+}
+
 @compute @workgroup_size(64) fn eval_map(@builtin(global_invocation_id) id: vec3u) {
   if (!is_case(id)) { return; }
   let a = bitcast<vec4f>(cases[id.x].a);
@@ -83,5 +95,9 @@ fn place(id: vec3u) -> Place {
   map.cumulus = c.y;
   map.stratus = c.z;
   map.stratocumulus = c.w;
-  store(id, map_texel_at(a.xy, map));
+  if (a.w == 1.0) {
+    store(id, weather_texture_at(a.xy, map));
+  } else {
+    store(id, map_texel_at(a.xy, map));
+  }
 }

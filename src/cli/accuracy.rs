@@ -9,12 +9,14 @@ use clap::{Args, ValueEnum};
 use super::bench::{Form, print_machine, print_table};
 use super::error::Usage;
 use super::integrate::describe;
+use super::interrupt::{self, Interrupted};
 use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
 use crate::files::{self, Sky};
 use crate::gpu::{Gpu, TimingSource};
-use crate::lab::accuracy::{self, Axis, Measured, TruthImage};
+use crate::lab::accuracy::{self, Axis, Measured};
+use crate::lab::sweep::{At, Plan, Sweep};
 use crate::plan::Integrator;
 use crate::render::Renderer;
 use crate::render::truth::Goal;
@@ -122,28 +124,49 @@ pub(super) fn run(args: &AccuracyArgs) -> Result<()> {
     let mut renderer = Renderer::new(&gpu)?;
     print_machine(args.form, &gpu)?;
     let source = TimingSource::of(&gpu).label();
-    for (name, scene, settings) in &cases {
-        let mut truths = Vec::new();
-        for goal in &goals {
-            let mut watch = |progress: &_| tell(&format!("{name}: {}", describe(*goal, progress)));
-            let of = (scene, &settings[0].quality);
-            let truth = accuracy::truth(&mut renderer, of, args.size, *goal, &mut watch)?;
+    interrupt::watch();
+    let several = cases.len() > 1;
+    for (name, scene, settings) in cases {
+        let plan = Plan { scene, size: args.size, settings, goals: goals.clone(), rounds: args.rounds };
+        let mut sweep = Sweep::new(plan);
+        run_sweep(&mut sweep, &mut renderer, &name)?;
+        report(args, &sweep, (&name, several), source)?;
+        if sweep.at() != At::Done {
+            return Err(Interrupted("what was measured so far is above".to_owned()).into());
+        }
+    }
+    Ok(())
+}
+
+/// Measures until the end or until Ctrl-C, and tells how far it is.
+fn run_sweep(sweep: &mut Sweep, renderer: &mut Renderer, name: &str) -> Result<()> {
+    let mut found = 0;
+    while !sweep.advance(renderer)? && !interrupt::is_asked() {
+        match sweep.at() {
+            At::Truth(goal, Some(progress)) => tell(&format!("{name}: {}", describe(goal, &progress))),
+            At::Truth(_, None) | At::Done => {}
+            At::Comparing(index) => tell(&format!("{name}: comparing {}", sweep.plan().settings[index].name)),
+            At::Timing(taken, all) => tell(&format!("{name}: timing {taken} of {all}")),
+        }
+        for (truth, goal) in sweep.truths().iter().zip(&sweep.plan().goals).skip(found) {
             eprintln!("{name}, {}: {}", truth.integrator.title(), describe(*goal, &truth.progress));
-            truths.push(truth);
+            found += 1;
         }
-        let mut watch = |what: &str| tell(&format!("{name}: {what}"));
-        let rows = accuracy::measure(&mut renderer, scene, (settings, args.rounds), &truths, &mut watch)?;
-        let [width, height] = args.size;
-        let title = format!("{name}, {width}×{height}, {} rounds", args.rounds);
-        print_table(args.form, &accuracy::table(&title, &rows, source))?;
-        choose(args, &rows, &truths)?;
-        if let Some(path) = &args.plot {
-            let path = if cases.len() > 1 { beside(path, name) } else { path.clone() };
-            let svg = accuracy::plot(&title, &rows, &truths, source).svg().svg;
-            write_atomically(&path, |file| {
-                std::io::Write::write_all(file, svg.as_bytes()).map_err(|cause| ExportError::writing(&path, cause))
-            })?;
-        }
+    }
+    Ok(())
+}
+
+fn report(args: &AccuracyArgs, sweep: &Sweep, (name, several): (&str, bool), source: &str) -> Result<()> {
+    let (title, rows) = (sweep.title(name), sweep.rows());
+    print_table(args.form, &accuracy::table(&title, rows, source))?;
+    let truths = sweep.integrators();
+    choose(args, rows, &truths)?;
+    if let Some(path) = &args.plot {
+        let path = if several { beside(path, name) } else { path.clone() };
+        let svg = accuracy::plot(&title, rows, &truths, source).svg().svg;
+        write_atomically(&path, |file| {
+            std::io::Write::write_all(file, svg.as_bytes()).map_err(|cause| ExportError::writing(&path, cause))
+        })?;
     }
     Ok(())
 }
@@ -160,8 +183,8 @@ fn tell(what: &str) {
 }
 
 /// Says which setting keeps to the budgets that were given, or comes nearest.
-fn choose(args: &AccuracyArgs, rows: &[Measured], truths: &[TruthImage]) -> Result<()> {
-    let Some(truth) = truths.first().map(|truth| truth.integrator) else { return Ok(()) };
+fn choose(args: &AccuracyArgs, rows: &[Measured], truths: &[Integrator]) -> Result<()> {
+    let Some(truth) = truths.first().copied() else { return Ok(()) };
     let budgets = [
         args.max_error.and_then(|most| {
             let wanted = format!("cheapest within {:.2} % of {}", most * 100.0, truth.title());

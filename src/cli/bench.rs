@@ -6,14 +6,18 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use clap::{Args, ValueEnum};
 
+use super::interrupt::{self, Interrupted};
 use super::json::Json;
 use super::{Device, Edits, args, print};
+use crate::app::lab::write_textures;
+use crate::export::ExportError;
+use crate::export::atomic::write_atomically;
 use crate::files::{self, Origin, Sky};
 use crate::gpu::{Gpu, TimingSource};
 use crate::lab::bench::{Case, Rounds, count_table, measure, pass_table, ratio_table};
 use crate::lab::flight;
+use crate::lab::suite::{Suite, SuiteKind};
 use crate::lab::table::{Cell, Table};
-use crate::lab::thesis::{self, Settings};
 use crate::render::Renderer;
 use crate::scene::builtin::BUILTINS;
 use crate::scene::edit;
@@ -41,7 +45,10 @@ pub(super) struct BenchArgs {
     flight: bool,
     /// A fixed set of measurements.
     #[arg(long)]
-    suite: Option<Suite>,
+    suite: Option<SuiteArg>,
+    /// Folder for the plots of a suite, as SVG.
+    #[arg(long, value_name = "FOLDER", requires = "suite")]
+    plots: Option<PathBuf>,
     /// Leave out the march of all pixels, which the march of a part is compared with.
     #[arg(long)]
     no_full: bool,
@@ -54,9 +61,20 @@ pub(super) struct BenchArgs {
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
-enum Suite {
+enum SuiteArg {
     /// Table 4.1 of the thesis, with its own model and with the defaults of this program.
     Thesis,
+    /// The sweeps of Costa 2023: eye steps, light steps, grid sizes, resolutions. Takes an hour on a processor.
+    Costa,
+}
+
+impl SuiteArg {
+    fn kind(self) -> SuiteKind {
+        match self {
+            Self::Thesis => SuiteKind::Thesis,
+            Self::Costa => SuiteKind::Costa,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Args)]
@@ -80,7 +98,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<()> {
     print_machine(args.form, &gpu)?;
     let source = TimingSource::of(&gpu);
     match (args.suite, args.flight) {
-        (Some(Suite::Thesis), _) => thesis_suite(args, &mut renderer, source),
+        (Some(suite), _) => run_suite(args, &mut renderer, (suite.kind(), source)),
         (None, true) => {
             let Some(case) = cases.first() else { return Ok(()) };
             let flight = flight::fly(&mut renderer, case, args.frames.saturating_mul(20))?;
@@ -143,12 +161,36 @@ fn per_pass(args: &BenchArgs, renderer: &mut Renderer, cases: &[Case]) -> Result
     if counts.rows.is_empty() { Ok(()) } else { print_table(args.form, &counts) }
 }
 
-fn thesis_suite(args: &BenchArgs, renderer: &mut Renderer, source: TimingSource) -> Result<()> {
-    for settings in [Settings::Thesis, Settings::Defaults] {
-        let cases = thesis::cases(settings);
-        let rows = measure(renderer, &cases, rounds(args), &mut progress)?;
-        print_table(args.form, &thesis::table(settings, &rows, source.label()))?;
-        let counts = count_table(renderer, &cases)?;
+/// Measures a suite until its end or until Ctrl-C.
+fn run_suite(args: &BenchArgs, renderer: &mut Renderer, (kind, source): (SuiteKind, TimingSource)) -> Result<()> {
+    interrupt::watch();
+    let folder = tempfile::tempdir()?;
+    let textures = write_textures(folder.path())?;
+    let mut suite = Suite::new(kind, rounds(args), &textures);
+    while let Some(turn) = suite.next_turn() {
+        if interrupt::is_asked() {
+            break;
+        }
+        progress(&turn);
+        suite.advance(renderer)?;
+    }
+    for table in suite.tables(source.label()) {
+        print_table(args.form, &table)?;
+    }
+    if let Some(plots) = &args.plots {
+        for (name, plot) in suite.plots(source.label()) {
+            let path = plots.join(format!("{name}.svg"));
+            let svg = plot.svg().svg;
+            write_atomically(&path, |file| {
+                std::io::Write::write_all(file, svg.as_bytes()).map_err(|cause| ExportError::writing(&path, cause))
+            })?;
+        }
+    }
+    if suite.next_turn().is_some() {
+        return Err(Interrupted("what was measured so far is above".to_owned()).into());
+    }
+    for cases in suite.cases() {
+        let counts = count_table(renderer, cases)?;
         if !counts.rows.is_empty() {
             print_table(args.form, &counts)?;
         }

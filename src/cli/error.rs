@@ -3,6 +3,7 @@
 use std::io::IsTerminal as _;
 use std::process::ExitCode;
 
+use super::interrupt::Interrupted;
 use crate::export::ExportError;
 use crate::files::FileError;
 use crate::gpu::GpuError;
@@ -20,6 +21,8 @@ const RENDERING: u8 = 1;
 const USAGE: u8 = 2;
 const ADAPTER: u8 = 3;
 const FILE: u8 = 4;
+/// What shells take for an end by Ctrl-C.
+pub(super) const INTERRUPTED: u8 = 130;
 
 /// The exit code of an error.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
@@ -38,6 +41,9 @@ fn code_of(cause: &(dyn std::error::Error + 'static)) -> Option<u8> {
     }
     if cause.is::<Usage>() || cause.is::<EditError>() || cause.is::<PatternError>() {
         return Some(USAGE);
+    }
+    if cause.is::<Interrupted>() {
+        return Some(INTERRUPTED);
     }
     let is_file = cause.is::<FileError>()
         || cause.is::<ExportError>()

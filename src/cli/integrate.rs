@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::error::Usage;
+use super::interrupt::{self, Interrupted};
 use crate::render::Renderer;
 use crate::render::truth::{Convergence, Goal, Truth};
 use crate::scene::Frame;
@@ -72,7 +73,7 @@ impl Integration {
     }
 }
 
-/// Brings a frame to its goal, with a bar on a terminal.
+/// Brings a frame to its goal, with a bar on a terminal; or as far as it came until Ctrl-C, if that is worth keeping.
 pub(super) fn converge(renderer: &mut Renderer, frame: &Frame<'_>, goal: Goal) -> Result<Truth> {
     use std::io::IsTerminal as _;
     let target =
@@ -81,6 +82,7 @@ pub(super) fn converge(renderer: &mut Renderer, frame: &Frame<'_>, goal: Goal) -
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {msg}") {
         bar.set_style(style);
     }
+    interrupt::watch();
     let mut truth = renderer.begin_truth(frame, goal, frame.quality.pixel_samples)?;
     loop {
         let progress = truth.advance(renderer, BUDGET, SLICE)?;
@@ -89,6 +91,13 @@ pub(super) fn converge(renderer: &mut Renderer, frame: &Frame<'_>, goal: Goal) -
         bar.set_message(describe(goal, &progress));
         if progress.is_done {
             break;
+        }
+        if interrupt::is_asked() {
+            bar.finish_and_clear();
+            if truth.has_picture() {
+                break;
+            }
+            return Err(Interrupted("nothing was finished yet".to_owned()).into());
         }
     }
     bar.finish_and_clear();

@@ -1,6 +1,7 @@
 //! The command line. Results go to stdout, progress and errors to stderr.
 //!
-//! Exit codes: 0 done · 1 rendering failed · 2 wrong usage · 3 no usable adapter · 4 a file could not be read or written.
+//! Exit codes: 0 done · 1 rendering failed · 2 wrong usage · 3 no usable adapter · 4 a file could not be read or written ·
+//! 130 stopped by Ctrl-C.
 
 mod accuracy;
 mod args;
@@ -10,6 +11,7 @@ mod error;
 mod grid;
 mod info;
 mod integrate;
+mod interrupt;
 mod json;
 mod presets;
 mod render;
@@ -39,7 +41,8 @@ pub struct Cli {
 }
 
 const EXIT_CODES: &str = "Without a command the editor opens; without a display, the sky is rendered to out/.\n\
-    Exit codes: 0 done, 1 rendering failed, 2 wrong usage, 3 no usable adapter, 4 file could not be read or written.";
+    Exit codes: 0 done, 1 rendering failed, 2 wrong usage, 3 no usable adapter, 4 file could not be read or written, \
+    130 stopped by Ctrl-C with what was finished kept.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

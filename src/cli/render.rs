@@ -10,6 +10,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::error::Usage;
 use super::integrate::{Integration, converge, describe};
+use super::interrupt::{self, Interrupted};
 use super::json::Json;
 use super::{Device, Edits, args, print};
 use crate::export::ExportError;
@@ -264,6 +265,10 @@ pub(super) fn run(args: &RenderArgs) -> Result<()> {
         let seconds = begun.elapsed().as_secs_f64();
         bar.suspend(|| report(args, path, *time_secs, seconds))?;
         bar.inc(1);
+        if interrupt::is_asked() {
+            bar.finish_and_clear();
+            return Err(Interrupted(format!("{} holds what was finished", path.display())).into());
+        }
     }
     bar.finish_and_clear();
     Ok(())

@@ -14,7 +14,7 @@ use super::pareto::{self, Point};
 use super::plot::{Plot, Series};
 use super::table::{Cell, Table};
 use crate::plan::Integrator;
-use crate::render::truth::{Convergence, Goal};
+use crate::render::truth::{Convergence, Goal, Truth};
 use crate::render::{Counts, RenderError, Renderer};
 use crate::scene::edit::{self, EditError};
 use crate::scene::param::Choice as _;
@@ -153,6 +153,22 @@ pub struct TruthImage {
 }
 
 impl TruthImage {
+    /// What a truth has come to.
+    pub(super) fn of(renderer: &Renderer, truth: Truth, goal: Goal, size: [u32; 2]) -> Result<Self, AccuracyError> {
+        let progress = truth.progress();
+        let picture = truth.picture(renderer)?;
+        let (_, display) = renderer.rgba8_of(&truth.into_display())?;
+        Ok(Self {
+            integrator: goal.integrator(),
+            progress,
+            size,
+            light: rgb(&picture.image.rgba),
+            opacity: picture.clouds.iter().map(|cloud| 1.0 - cloud[3]).collect(),
+            variance: (!picture.variance.is_empty()).then(|| rgb(&picture.variance)),
+            shown: shown(&display),
+        })
+    }
+
     /// Light of each pixel.
     pub fn light(&self) -> &[[f32; 3]] {
         &self.light
@@ -198,26 +214,24 @@ pub fn truth(
     goal: Goal,
     watch: &mut dyn FnMut(&Convergence),
 ) -> Result<TruthImage, AccuracyError> {
-    let quality = of_still(quality);
-    let mut truth = renderer.begin_truth(&still(scene, &quality, size), goal, 1)?;
-    let progress = loop {
+    let mut truth = begin_truth(renderer, (scene, quality), size, goal)?;
+    loop {
         let progress = truth.advance(renderer, Duration::from_millis(500), Duration::from_millis(200))?;
         watch(&progress);
         if progress.is_done {
-            break progress;
+            return TruthImage::of(renderer, truth, goal, size);
         }
-    };
-    let picture = truth.picture(renderer)?;
-    let (_, display) = renderer.rgba8_of(&truth.into_display())?;
-    Ok(TruthImage {
-        integrator: goal.integrator(),
-        progress,
-        size,
-        light: rgb(&picture.image.rgba),
-        opacity: picture.clouds.iter().map(|cloud| 1.0 - cloud[3]).collect(),
-        variance: (!picture.variance.is_empty()).then(|| rgb(&picture.variance)),
-        shown: shown(&display),
-    })
+    }
+}
+
+/// Begins a truth of a still.
+pub(super) fn begin_truth(
+    renderer: &mut Renderer,
+    (scene, quality): (&Scene, &Quality),
+    size: [u32; 2],
+    goal: Goal,
+) -> Result<Truth, AccuracyError> {
+    Ok(renderer.begin_truth(&still(scene, &of_still(quality), size), goal, 1)?)
 }
 
 /// Errors of one setting against one truth.
@@ -259,6 +273,36 @@ impl Measured {
     }
 }
 
+/// Errors and work of one setting.
+pub(super) fn compared(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    setting: &Setting,
+    (truths, size): (&[TruthImage], [u32; 2]),
+) -> Result<Measured, AccuracyError> {
+    let quality = of_still(&setting.quality);
+    let frame = still(scene, &quality, size);
+    renderer.render(&frame)?;
+    let light = rgb(&renderer.linear()?.rgba);
+    let display = shown(&renderer.display_rgba8()?.1);
+    let against = truths.iter().map(|truth| compare(scene, truth, &light, &display)).collect::<Result<Vec<_>, _>>()?;
+    let counts = renderer.counted_reads(&frame)?;
+    Ok(Measured { setting: setting.clone(), march_ms: Vec::new(), counts, against })
+}
+
+/// Times the march of one setting once more.
+pub(super) fn timed(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    row: &mut Measured,
+    size: [u32; 2],
+) -> Result<(), AccuracyError> {
+    let report = renderer.render(&still(scene, &of_still(&row.setting.quality), size))?;
+    let march = report.passes.iter().find(|time| time.pass == "march");
+    row.march_ms.extend(march.and_then(|time| time.millis));
+    Ok(())
+}
+
 fn compare(
     scene: &Scene,
     truth: &TruthImage,
@@ -278,43 +322,6 @@ fn compare(
         whole: reference(everything.as_ref())?,
         flip: flip::flip(&truth.shown, display, width, PIXELS_PER_DEGREE)?.mean,
     })
-}
-
-/// Measures all settings against all truths, in `rounds` interleaved rounds after one that warms up.
-///
-/// # Errors
-/// [`AccuracyError`] if a frame cannot be rendered or compared.
-pub fn measure(
-    renderer: &mut Renderer,
-    scene: &Scene,
-    (settings, rounds): (&[Setting], u32),
-    truths: &[TruthImage],
-    watch: &mut dyn FnMut(&str),
-) -> Result<Vec<Measured>, AccuracyError> {
-    let size = truths.first().map_or([1, 1], |truth| truth.size);
-    let mut measured = Vec::new();
-    for setting in settings {
-        watch(&format!("comparing {}", setting.name));
-        let quality = of_still(&setting.quality);
-        let frame = still(scene, &quality, size);
-        renderer.render(&frame)?;
-        let light = rgb(&renderer.linear()?.rgba);
-        let display = shown(&renderer.display_rgba8()?.1);
-        let against =
-            truths.iter().map(|truth| compare(scene, truth, &light, &display)).collect::<Result<Vec<_>, _>>()?;
-        let counts = renderer.counted_reads(&frame)?;
-        measured.push(Measured { setting: setting.clone(), march_ms: Vec::new(), counts, against });
-    }
-    for round in 0..rounds {
-        watch(&format!("timing, round {} of {rounds}", round + 1));
-        for row in &mut measured {
-            let quality = of_still(&row.setting.quality);
-            let report = renderer.render(&still(scene, &quality, size))?;
-            let march = report.passes.iter().find(|time| time.pass == "march");
-            row.march_ms.extend(march.and_then(|time| time.millis));
-        }
-    }
-    Ok(measured)
 }
 
 /// Cost and error of each setting that has both, with its place in `rows`.
@@ -415,12 +422,12 @@ pub fn table(title: &str, rows: &[Measured], source: &str) -> Table {
 }
 
 /// Error over time of all settings, with the front against each truth and the setting in use marked.
-pub fn plot(title: &str, rows: &[Measured], truths: &[TruthImage], source: &str) -> Plot {
+pub fn plot(title: &str, rows: &[Measured], truths: &[Integrator], source: &str) -> Plot {
     let series = |integrator: Integrator| {
         let points = points(rows, integrator).into_iter().map(|(_, point)| [point.cost, point.error * 100.0]);
         Series { name: integrator.title().to_owned(), points: points.collect(), joined: false }
     };
-    let first = truths.first().map(|truth| truth.integrator);
+    let first = truths.first().copied();
     let place = |row: usize| {
         let row = &rows[row];
         Some([row.median_ms()?, row.error(first?)?.value * 100.0])
@@ -430,7 +437,7 @@ pub fn plot(title: &str, rows: &[Measured], truths: &[TruthImage], source: &str)
         title: title.to_owned(),
         x_label: format!("march, ms ({source})"),
         y_label: "relRMSE over clouds, %".to_owned(),
-        series: truths.iter().map(|truth| series(truth.integrator)).collect(),
+        series: truths.iter().map(|truth| series(*truth)).collect(),
         front: on_front.into_iter().filter_map(place).collect(),
         current: rows.iter().position(|row| row.setting.is_current).and_then(place),
     }

@@ -91,6 +91,8 @@ pub struct Row {
     pub on_change: Vec<PassSamples>,
     /// Totals of the frames, in milliseconds.
     pub total: Vec<f64>,
+    /// Total of the last frame that warmed up, in milliseconds.
+    warm_up_ms: f64,
 }
 
 impl Row {
@@ -98,6 +100,11 @@ impl Row {
     pub fn median(&self, pass: &str) -> Option<f64> {
         let samples = self.each_frame.iter().find(|samples| samples.pass == pass)?;
         Stats::of(&samples.millis).map(|stats| stats.median)
+    }
+
+    /// Whether fewer rounds have to do.
+    fn is_slow(&self) -> bool {
+        self.warm_up_ms > SLOW_MS
     }
 
     fn add(&mut self, report: &FrameReport) {
@@ -116,6 +123,110 @@ pub(super) fn add_passes(samples: &mut Vec<PassSamples>, report: &FrameReport) {
     }
 }
 
+/// Rounds that are enough for a case whose frames take longer than [`SLOW_MS`].
+const SLOW_ROUNDS: u32 = 3;
+const SLOW_MS: f64 = 2000.0;
+
+/// All cases being measured in turns: it can be left after each turn and taken up again.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    cases: Vec<Case>,
+    rounds: Rounds,
+    rows: Vec<Row>,
+    /// Turns taken, those of warming up among them.
+    turns: usize,
+}
+
+impl Measurement {
+    /// Nothing measured yet.
+    pub fn new(cases: Vec<Case>, rounds: Rounds) -> Self {
+        let rows = vec![Row::default(); cases.len()];
+        Self { cases, rounds, rows, turns: 0 }
+    }
+
+    /// Takes the next turn: one case's frames of one round. Returns whether all is measured.
+    ///
+    /// # Errors
+    /// If a frame cannot be rendered; the turn can be tried again.
+    pub fn advance(&mut self, renderer: &mut Renderer) -> Result<bool, RenderError> {
+        let Some((round, index)) = self.next() else { return Ok(true) };
+        let (case, row) = (&self.cases[index], &mut self.rows[index]);
+        let counts = round >= self.rounds.warm_up;
+        let mut time_secs = f64::from(round);
+        if row.is_slow() {
+            if row.total.len() < (SLOW_ROUNDS * self.rounds.frames) as usize {
+                for _ in 0..self.rounds.frames {
+                    row.add(&renderer.render(&case.frame(time_secs))?);
+                }
+            }
+        } else {
+            let first = renderer.render(&case.frame(time_secs))?;
+            if counts {
+                add_passes(&mut row.on_change, &first);
+            } else {
+                row.warm_up_ms = first.total_ms;
+            }
+            // Frames that take seconds are warm after one.
+            let others = if counts { self.rounds.frames } else { u32::from(!row.is_slow()) };
+            for _ in 0..others {
+                time_secs += 1.0 / 24.0;
+                let report = renderer.render(&case.frame(time_secs))?;
+                if counts {
+                    row.add(&report);
+                } else {
+                    row.warm_up_ms = report.total_ms;
+                }
+            }
+        }
+        self.turns += 1;
+        Ok(self.next().is_none())
+    }
+
+    fn next(&self) -> Option<(u32, usize)> {
+        let cases = self.cases.len().max(1);
+        let round = u32::try_from(self.turns / cases).unwrap_or(u32::MAX);
+        let all = self.rounds.warm_up + self.rounds.rounds;
+        (round < all && !self.cases.is_empty()).then_some((round, self.turns % cases))
+    }
+
+    /// What the next turn does, in words; `None` at the end.
+    pub fn next_turn(&self) -> Option<String> {
+        let (round, index) = self.next()?;
+        let kind = if round < self.rounds.warm_up { "warm-up" } else { "round" };
+        Some(format!("{kind} {round}: {} {}", self.cases[index].name, self.cases[index].size_text()))
+    }
+
+    /// Turns taken, and turns altogether.
+    pub fn turns(&self) -> (usize, usize) {
+        (self.turns, self.cases.len() * (self.rounds.warm_up + self.rounds.rounds) as usize)
+    }
+
+    /// What is measured.
+    pub fn cases(&self) -> &[Case] {
+        &self.cases
+    }
+
+    /// What was measured so far, in the order of the cases.
+    pub fn rows(&self) -> Vec<Row> {
+        let mut rows = self.rows.clone();
+        for Row { each_frame, on_change, .. } in &mut rows {
+            on_change.retain(|first| !each_frame.iter().any(|samples| samples.pass == first.pass));
+        }
+        rows
+    }
+
+    /// How many rounds there were, in words.
+    pub fn rounds_text(&self) -> String {
+        let slow = self.rows.iter().filter(|row| row.is_slow()).count();
+        let few = if slow > 0 && self.rounds.rounds > SLOW_ROUNDS {
+            format!(", {SLOW_ROUNDS} for {slow} with frames over 2 s")
+        } else {
+            String::new()
+        };
+        format!("{} rounds{few}", self.rounds.rounds)
+    }
+}
+
 /// Measures all cases in turns; `progress` hears what is being done.
 ///
 /// # Errors
@@ -126,30 +237,12 @@ pub fn measure(
     rounds: Rounds,
     progress: &mut dyn FnMut(&str),
 ) -> Result<Vec<Row>, RenderError> {
-    let mut rows = vec![Row::default(); cases.len()];
-    for round in 0..rounds.warm_up + rounds.rounds {
-        let counts = round >= rounds.warm_up;
-        for (case, row) in cases.iter().zip(&mut rows) {
-            let kind = if counts { "round" } else { "warm-up" };
-            progress(&format!("{kind} {round}: {} {}", case.name, case.size_text()));
-            let mut time_secs = f64::from(round);
-            let first = renderer.render(&case.frame(time_secs))?;
-            if counts {
-                add_passes(&mut row.on_change, &first);
-            }
-            for _ in 0..if counts { rounds.frames } else { 1 } {
-                time_secs += 1.0 / 24.0;
-                let report = renderer.render(&case.frame(time_secs))?;
-                if counts {
-                    row.add(&report);
-                }
-            }
-        }
+    let mut measurement = Measurement::new(cases.to_vec(), rounds);
+    while let Some(turn) = measurement.next_turn() {
+        progress(&turn);
+        measurement.advance(renderer)?;
     }
-    for Row { each_frame, on_change, .. } in &mut rows {
-        on_change.retain(|first| !each_frame.iter().any(|samples| samples.pass == first.pass));
-    }
-    Ok(rows)
+    Ok(measurement.rows())
 }
 
 /// One row a pass: what runs each frame, then what runs when something changes.

@@ -148,10 +148,8 @@ pub fn thesis_density(field: f32, layer: &LayerUniforms) -> f32 {
     (field * layer.sharpness).clamp(0.0, 1.0)
 }
 
-/// Twin of `map_texel_at`; `uv` in tiles.
-#[must_use]
-pub fn map_texel(uv: Vec2, map: &MapUniforms) -> Vec4 {
-    let p = uv.extend(map.phase);
+/// Depth inside a cloud, cell and slow variation of a generated map.
+fn map_field(p: Vec3, map: &MapUniforms) -> (f32, u32, f32) {
     let seed = |offset: u32| map.seed.wrapping_mul(16).wrapping_add(offset);
     let cells = map.large_cells.cast_signed();
     let region = (perlin_fbm(p, 3, 4, seed(0)) * 1.1 + 0.5).clamp(0.0, 1.0);
@@ -167,7 +165,38 @@ pub fn map_texel(uv: Vec2, map: &MapUniforms) -> Vec4 {
     let cellular = mix(puffs * 0.92, fields * 1.06, size);
     let field = mix(cellular, region, 0.8 * map.contrast) + fray * 0.63 * map.fray;
     let spread = 1.0 / (1.0 + (-9.5 * (field - 0.455)).exp());
-    (spread * type_of_cell(large.id, map)).extend(smoothstep(0.3, 0.75, region))
+    (spread, large.id, region)
+}
+
+/// Twin of `map_texel_at`; `uv` in tiles.
+#[must_use]
+pub fn map_texel(uv: Vec2, map: &MapUniforms) -> Vec4 {
+    let (depth, cell, region) = map_field(uv.extend(map.phase), map);
+    (depth * type_of_cell(cell, map)).extend(smoothstep(0.3, 0.75, region))
+}
+
+/// Twin of `weather_texture_at`; `uv` in tiles.
+#[must_use]
+pub fn weather_texture(uv: Vec2, map: &MapUniforms) -> Vec4 {
+    let p = uv.extend(map.phase);
+    let (depth, _, region) = map_field(p, map);
+    let rough = (perlin_fbm(p, 12, 3, map.seed.wrapping_mul(16).wrapping_add(12)) + 0.5).clamp(0.0, 1.0);
+    let altitude = 0.3 * smoothstep(0.25, 0.8, rough);
+    let height = (0.25 + 0.45 * smoothstep(0.3, 0.75, region) + 0.3 * rough) * depth.sqrt();
+    Vec4::new(depth, height.min(1.0 - altitude), altitude, 0.0)
+}
+
+/// Twin of Costa's model (2023, equations 3.1 to 3.3) for a coverage: after the large noise, and the density.
+#[must_use]
+pub fn costa(coverage: f32, texel: Vec4, noises: [Vec4; 2], layer: &LayerUniforms, (h, fade): (f32, f32)) -> [f32; 2] {
+    let a = (h - texel.z) / texel.y.max(1e-6);
+    let signal = if texel.y > 0.0 { (4.0 * a * (1.0 - a)).max(0.0) } else { 0.0 };
+    let octaves = |x: f32, y: f32, z: f32| (0.5 * x + 0.25 * y + 0.125 * z) / 0.875;
+    let [large, small] = noises;
+    let shape = octaves(large.y, large.z, large.w) * large.x;
+    let shaped = coverage * signal * mix(1.0, shape, layer.shape_strength.min(1.0)) * layer.shape_strength.max(1.0);
+    let eroded = shaped - octaves(small.w, small.x, small.y) * layer.detail_strength * (1.0 - fade);
+    [shaped, (eroded * layer.sharpness).clamp(0.0, 1.0)]
 }
 
 fn type_of_cell(id: u32, map: &MapUniforms) -> Vec3 {

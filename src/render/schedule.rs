@@ -96,7 +96,7 @@ impl Renderer {
         }
         let mut read_by_bake = self.bakes.resources();
         read_by_bake.extend(self.weather.resources());
-        self.voxels.update(&context, (frame, plan), &read_by_bake, &mut jobs)?;
+        self.voxels.update(&context, (frame, plan), (&read_by_bake, self.weather.count()), &mut jobs)?;
         Ok(jobs)
     }
 

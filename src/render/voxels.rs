@@ -10,7 +10,7 @@ use super::{RenderError, Renderer};
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture, job, readback};
 use crate::images::voxels::{Bounds, VoxelGrid};
 use crate::plan::{FramePlan, MarchVariant};
-use crate::scene::{CloudLayer, DensityModel, Frame, Scene, Weather};
+use crate::scene::{CloudLayer, DensityModel, Frame, Scene};
 
 /// Voxels along each edge of a cell whose greatest value is known; as `cloud/voxels.wgsl` has it.
 const PER_CELL: u32 = 8;
@@ -28,9 +28,8 @@ struct Made<K> {
 #[derive(Debug, PartialEq)]
 struct BakedFrom {
     field: SceneUniforms,
-    /// The map's layers, the time of its state, and the voxels of a file.
-    weather: Weather,
-    time_secs: f64,
+    /// Which of the weather maps it was, by their count.
+    map: u64,
     file: Option<PathBuf>,
     variant: MarchVariant,
 }
@@ -44,12 +43,12 @@ pub(super) struct Voxels {
 
 impl Voxels {
     /// Reads the file and bakes the layers that the plan calls for, as far as they are not there; lets go of the others.
-    /// A bake reads `inputs`: noises and weather map.
+    /// A bake reads `inputs`: noises and weather map, of which it is the one of this count.
     pub(super) fn update(
         &mut self,
         context: &Context<'_>,
         (frame, plan): (&Frame<'_>, &FramePlan),
-        inputs: &Bound<'_>,
+        (inputs, map): (&Bound<'_>, u64),
         jobs: &mut Vec<Job>,
     ) -> Result<(), RenderError> {
         let Some(march) = plan.march else {
@@ -57,7 +56,7 @@ impl Voxels {
             return Ok(());
         };
         self.update_file(context, frame.scene, march)?;
-        self.update_baked(context, (frame, march), inputs, jobs)?;
+        self.update_baked(context, (frame, march), (inputs, map), jobs)?;
         let tracked = march.baked.is_none();
         if let Some(file) = &mut self.file {
             file.update_bound(context, plan.tracks && tracked, jobs)?;
@@ -93,7 +92,7 @@ impl Voxels {
         &mut self,
         context: &Context<'_>,
         (frame, march): (&Frame<'_>, MarchVariant),
-        inputs: &Bound<'_>,
+        (inputs, map): (&Bound<'_>, u64),
         jobs: &mut Vec<Job>,
     ) -> Result<(), RenderError> {
         let Some(across) = march.baked else {
@@ -102,8 +101,7 @@ impl Voxels {
         };
         let from = BakedFrom {
             field: field_uniforms(frame),
-            weather: frame.scene.weather.clone(),
-            time_secs: frame.time_secs,
+            map,
             file: self.file.as_ref().map(|file| file.from.clone()),
             variant: MarchVariant { octaves: 0, air: false, ground: false, float: false, ..march },
         };

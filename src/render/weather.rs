@@ -46,11 +46,13 @@ pub(super) struct WeatherMap {
     bounds: Vec<(&'static str, Texture)>,
     /// States and share that each joined map was made from.
     made_from: Vec<(StateKey, StateKey, f32)>,
+    /// Maps joined so far.
+    count: u64,
 }
 
 impl WeatherMap {
     pub(super) fn new() -> Self {
-        Self { states: Vec::new(), joined: Vec::new(), bounds: Vec::new(), made_from: Vec::new() }
+        Self { states: Vec::new(), joined: Vec::new(), bounds: Vec::new(), made_from: Vec::new(), count: 0 }
     }
 
     /// Appends the jobs that bring the map to a time.
@@ -79,6 +81,7 @@ impl WeatherMap {
             return Ok(());
         }
         self.join(context, &wanted, jobs)?;
+        self.count += 1;
         self.made_from = wanted;
         self.bounds.clear();
         Ok(())
@@ -156,7 +159,12 @@ impl WeatherMap {
 
     /// Forgets everything, as when no cloud is drawn.
     pub(super) fn clear(&mut self) {
-        *self = Self::new();
+        *self = Self { count: self.count, ..Self::new() };
+    }
+
+    /// Which of all maps made so far this one is.
+    pub(super) fn count(&self) -> u64 {
+        self.count
     }
 
     /// Device memory in bytes.
@@ -170,7 +178,7 @@ impl WeatherMap {
 #[allow(clippy::cast_possible_truncation, reason = "counts of states and images are small; shares are in 0..1")]
 fn states_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<(StateKey, StateKey, f32), String> {
     match layer.source {
-        MapSource::Generated => {
+        MapSource::Generated | MapSource::WeatherTexture => {
             let period = f64::from(weather.evolution_secs);
             let position = if period > 0.0 { time_secs / period * STATES } else { 0.0 };
             let state = position.floor();
@@ -247,7 +255,7 @@ fn make_state(context: &Context<'_>, key: &StateKey, jobs: &mut Vec<Job>) -> Res
                 stratus: layer.stratus,
                 stratocumulus: layer.stratocumulus,
                 phase: phase as f32,
-                pad0: 0.0,
+                is_weather_texture: u32::from(layer.source == MapSource::WeatherTexture),
                 pad1: 0.0,
                 pad2: 0.0,
             };

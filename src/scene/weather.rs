@@ -8,6 +8,8 @@ choices! {
     pub enum MapSource {
         /// Layered Perlin and Worley noise.
         Generated ("Generated"),
+        /// The same noise as coverage, height and altitude, for the density model of that name.
+        WeatherTexture ("Generated weather texture"),
         /// A PNG or EXR image of the user's.
         Image ("Image"),
         /// A numbered sequence of images, played over time.
@@ -27,12 +29,19 @@ choices! {
     }
 }
 
+impl MapSource {
+    /// Whether it comes from noise, and so tiles and evolves.
+    pub fn is_generated(self) -> bool {
+        matches!(self, Self::Generated | Self::WeatherTexture)
+    }
+}
+
 params! {
     /// One layer of the weather map.
     pub struct MapLayer ("Map layer") {
         /// Where the layer comes from.
         source: MapSource = MapSource::Generated;
-        /// Image file (red: cumulus, green: stratus, blue: stratocumulus, each the greatest density there), or the pattern of a sequence such as `map.####.png`.
+        /// Image file (red: cumulus, green: stratus, blue: stratocumulus, each the greatest density there; for the model of weather textures coverage, height and altitude), or the pattern of a sequence such as `map.####.png`.
         image: FileName = FileName::default();
         /// Images shown per second of scene time, for a sequence.
         images_per_sec: f32 = 1.0, 0.001..=60.0, None, logarithmic;

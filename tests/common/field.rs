@@ -59,7 +59,7 @@ pub(crate) fn map_uniforms(seed: u32) -> MapUniforms {
         stratus: 0.3,
         stratocumulus: 0.3,
         phase: 0.0,
-        pad0: 0.0,
+        is_weather_texture: 0,
         pad1: 0.0,
         pad2: 0.0,
     }

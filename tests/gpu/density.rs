@@ -145,6 +145,30 @@ fn no_density_exceeds_its_bound() {
 }
 
 #[test]
+fn the_model_of_weather_textures_follows_its_twin_under_its_bound() {
+    let mut random = Random::new(31);
+    let mut inputs = inputs(26, 4000);
+    for input in &mut inputs {
+        input.texel = unit4(&mut random);
+        // Above and below the cloud, and clouds without height.
+        input.texel.y = random.pick(&[0.0, 0.3, 1.0]);
+    }
+    let mut dense = 0;
+    for (input, [shaped, value, bound, _]) in inputs.iter().zip(evaluated("eval_costa", &inputs)) {
+        let coverage = (input.texel.x * input.layer.body_scale + input.bias).clamp(0.0, 1.0);
+        let at = (input.h, input.fade);
+        let [expected, expected_density] =
+            density::costa(coverage, input.texel, [input.large, input.small], &input.layer, at);
+        assert!((shaped - expected).abs() < 2e-5, "{input:?}: {shaped}, not {expected}");
+        assert!((value - expected_density).abs() < 1e-4, "{input:?}: {value}, not {expected_density}");
+        assert!(value <= bound + 1e-6, "{input:?}: {value} over {bound}");
+        assert!(input.texel.y > 0.0 || value == 0.0, "{input:?}: no height, no cloud");
+        dense += u32::from(value > 0.1);
+    }
+    assert!(dense > 100, "{dense} of 4000 are dense");
+}
+
+#[test]
 fn what_is_not_near_the_surface_needs_no_detail() {
     let inputs = inputs(24, 20_000);
     for (model, entry_point) in [("profile", "eval_profile_density"), ("thesis", "eval_thesis_density")] {
@@ -166,12 +190,23 @@ fn the_weather_map_follows_its_twin() {
             nephoscope::render::uniforms::other::MapUniforms { phase: random.between(0.0, 1.0), ..map_uniforms(seed) };
         let places: Vec<Vec2> =
             (0..1500).map(|_| Vec2::new(random.between(0.0, 1.0), random.between(0.0, 1.0))).collect();
-        let case = |uv: &Vec2| {
+        let case = |uv: &Vec2, is_weather_texture: bool| {
             let counts = [map.seed, map.large_cells, map.small_share.to_bits(), map.fray.to_bits()];
             let weights = [map.contrast, map.cumulus, map.stratus, map.stratocumulus];
-            [bits4([uv.x, uv.y, map.phase, 0.0]), counts, bits4(weights), [0; 4]]
+            let form = f32::from(u8::from(is_weather_texture));
+            [bits4([uv.x, uv.y, map.phase, form]), counts, bits4(weights), [0; 4]]
         };
-        let cases: Vec<Case> = places.iter().map(case).collect();
+        let cases: Vec<Case> = places.iter().map(|uv| case(uv, true)).collect();
+        for (uv, result) in places.iter().zip(eval("density", "eval_map", &cases)) {
+            let expected = density::weather_texture(*uv, &map);
+            // The root is steep where the coverage is small.
+            assert!(
+                (Vec4::from_array(result) - expected).abs().max_element() < 2e-4,
+                "{uv}: {result:?}, not {expected}"
+            );
+            assert!(result[1] + result[2] <= 1.0 && result.iter().all(|value| *value >= 0.0), "{uv}: {result:?}");
+        }
+        let cases: Vec<Case> = places.iter().map(|uv| case(uv, false)).collect();
         for (uv, result) in places.iter().zip(eval("density", "eval_map", &cases)) {
             let expected = density::map_texel(*uv, &map);
             // Between two cells either may be the nearest, and their types differ; all the rest agrees.

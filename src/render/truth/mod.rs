@@ -245,6 +245,11 @@ impl Truth {
         self.progress
     }
 
+    /// Whether any level or batch of samples is finished.
+    pub fn has_picture(&self) -> bool {
+        self.has_picture
+    }
+
     /// What runs for it, and why.
     pub fn plan(&self) -> &FramePlan {
         &self.plan

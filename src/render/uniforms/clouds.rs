@@ -5,9 +5,7 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 use super::camera::Eye;
 use super::scene::{LayerUniforms, SceneUniforms};
 use crate::plan::{KeyLight, Lighting};
-use crate::scene::{
-    Camera, CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, MapSource, PhaseKind, Quality, Scene, Wind,
-};
+use crate::scene::{Camera, CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scene, Wind};
 
 /// Velocity of the wind: east in x, south in y.
 pub(crate) fn wind_mps(wind: &Wind) -> DVec2 {
@@ -23,7 +21,7 @@ fn wrapped(tiles: f64) -> f32 {
 fn map_from_world(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) -> Vec4 {
     let weather = &scene.weather;
     let size_m = f64::from(weather.size_m) * f64::from(layer.map_scale);
-    let is_generated = weather.layers.iter().all(|map| map.source == MapSource::Generated);
+    let is_generated = weather.layers.iter().all(|map| map.source.is_generated());
     let drift = if weather.moves && is_generated {
         wind_mps(&scene.wind) * time_secs * f64::from(layer.wind_scale)
     } else {

@@ -63,8 +63,8 @@ gpu_struct! {
         pub stratocumulus: f32,
         /// Place on the noises' third axis, in tiles.
         pub phase: f32,
-        /// Keeps the size a multiple of 16 bytes.
-        pub pad0: f32,
+        /// 1 for the channels of a weather texture: coverage, height, altitude.
+        pub is_weather_texture: u32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad1: f32,
         /// Keeps the size a multiple of 16 bytes.
