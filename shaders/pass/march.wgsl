@@ -104,21 +104,26 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
 var<private> steps_left: u32;
 
 // Length of the steps that look for a surface, relative to ordinary ones.
-const SURFACE_STEP: f32 = 0.2;
+const SURFACE_STEP: f32 = 0.3;
 // Clear samples after which long steps are taken.
-const CLEAR_SAMPLES: u32 = 6u;
-// Longest step, relative to ordinary ones, where cloud may be near.
-const NEAR_STRIDE: f32 = 1.7;
+const CLEAR_SAMPLES: u32 = 4u;
+// Longest step, relative to ordinary ones, where cloud may be near; and the shortest one before a surface.
+const NEAR_STRIDE: f32 = 1.3;
+const NEAREST_STRIDE: f32 = 0.25;
+// Steps inside begin short and grow by this: clouds are thin at their surface, where the light is, and by its extinction
+// alone the first sample would stand for a long way into denser cloud.
+const GROWTH_INSIDE: f32 = 2.0;
 
 // One stretch of the ray. Three lengths of step: long ones in clear air; on meeting cloud a step back, and short ones
-// to find its surface; inside, steps of equal optical depth, longer where little is left to see.
+// to find its surface; inside, steps that grow until they have equal optical depth, longer where little is left to see.
 fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
   var seen = seen_before;
-  // How much of the way before a sample still counts as its own: the last step makes up for it, so that even cloud
-  // absorbs what the whole stretch absorbs, whatever the jitter.
+  // How much of the way before a sample counts as its own, so that even cloud absorbs what the whole stretch absorbs,
+  // whatever the jitter.
   var behind = jitter * step_at(segment.x);
   var t = segment.x + behind;
   var advanced = 0.0;
+  var inside_step = step_at(segment.x);
   var clear_samples = CLEAR_SAMPLES;
   while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
     steps_left -= 1u;
@@ -133,11 +138,12 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     let densities = densities_at(origin + dir * t, Reading(noise_level(t), fade < 1.0, fade));
     let extinction = extinction_of(densities);
     if (extinction <= 0.0) {
+      inside_step = 0.0;
       clear_samples += 1u;
       // Where the map promises clear air all that way; else long steps only after some clear ones, away from surfaces.
       let stride = select(min(scene.empty_stride, NEAR_STRIDE), scene.empty_stride, clear_way >= FAR_M);
       let far = select(step, step * stride, clear_samples > CLEAR_SAMPLES + 3u && clearness >= 1.0);
-      let ordinary = select(far * max(clearness, 0.35), clear_way, clear_way > step * stride && clear_way < FAR_M);
+      let ordinary = select(far * max(clearness, NEAREST_STRIDE), clear_way, clear_way > step * stride && clear_way < FAR_M);
       advanced = select(surface_step, ordinary, clear_samples > CLEAR_SAMPLES);
       // On average cloud begins half way to the next sample.
       behind = 0.5 * advanced;
@@ -151,8 +157,12 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     } else {
       clear_samples = 0u;
       advanced = 0.0;
-      let wanted = min(step, max(scene.step_depth / (extinction * max(seen.transmittance, 0.15)), surface_step));
-      let length = select(wanted, segment.y - t + behind, t + wanted >= segment.y);
+      let by_depth = max(scene.step_depth / (extinction * max(seen.transmittance, 0.15)), surface_step);
+      let wanted = min(min(step, by_depth), max(GROWTH_INSIDE * inside_step, surface_step));
+      inside_step = wanted;
+      // A sample stands for the way half to its neighbours on both sides, the last one for all that is left.
+      let length = behind + select(0.5 * wanted, segment.y - t, t + wanted >= segment.y);
+      behind = 0.5 * wanted;
       let alpha = absorbed(extinction * length);
       let share = seen.transmittance * alpha;
       waiting_distance[waiting_count] = t;
@@ -165,7 +175,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       seen.distance_sum += share * t;
       seen.weight_sum += share;
       seen.transmittance *= 1.0 - alpha;
-      t += length;
+      t += wanted;
     }
   }
   return seen;
