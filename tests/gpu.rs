@@ -7,6 +7,7 @@ mod gpu {
     mod density;
     mod frames;
     mod grid;
+    mod lab;
     mod math;
     mod noise;
     mod phase;

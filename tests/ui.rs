@@ -6,12 +6,12 @@ use std::rc::Rc;
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{Queryable as _, by};
-use nephoscope::app::action::Request;
+use nephoscope::app::action::{Lab, Order, Request};
 use nephoscope::app::{Document, Folders, Session};
 use nephoscope::lab::metrics::{Errors, Estimate};
 use nephoscope::plan::Integrator;
 use nephoscope::scene::{CloudLayer, Preset, Quality, QualityLevel, Scene};
-use nephoscope::ui::{Comparison, Dialog, Picture, Readout, Refined, Refinement, TruthState};
+use nephoscope::ui::{Comparison, Dialog, LabView, Measured, Phase, Picture, Readout, Refined, Refinement, TruthState};
 
 /// The panels with a session, and what was left for the window to do.
 struct Editor {
@@ -485,4 +485,44 @@ fn the_divider_is_dragged_without_turning_the_camera() {
     let divider = editor.truth().divider;
     assert!((0.2..0.45).contains(&divider), "{divider}");
     assert!(!editor.document().is_modified(), "the camera stays");
+}
+
+#[test]
+fn the_lab_measures_and_what_it_found_can_be_used() {
+    let mut editor = Editor::new();
+    editor.press(egui::Key::F9);
+    editor.click("lab.measure");
+    let order = match editor.requests.borrow().as_slice() {
+        [Request::Lab(Lab::Start(order))] => (**order).clone(),
+        other => panic!("{other:?}"),
+    };
+    let Order::Sweep { settings, goals, rounds, .. } = order else { panic!("{order:?}") };
+    assert!(settings.len() > 5 && settings[0].is_current && goals.len() == 1 && rounds == 15, "{goals:?}");
+    let measured = |light_steps: u32, cost: f64, error: f64| Measured {
+        name: format!("light_steps={light_steps}"),
+        quality: Quality { light_steps, ..Quality::default() },
+        cost_ms: Some(cost),
+        error,
+        std_error: None,
+        reads: 50.0,
+        is_on_front: true,
+        is_current: false,
+    };
+    editor.harness.state_mut().ui.lab.view = LabView {
+        name: "Test sky".to_owned(),
+        phase: Phase::Running,
+        settings: vec![measured(3, 20.0, 0.3), measured(21, 60.0, 0.05)],
+        ..LabView::default()
+    };
+    editor.harness.run();
+    assert!(editor.is_disabled("lab.measure"), "one thing at a time");
+    editor.click("lab.pause");
+    assert_eq!(editor.requests.borrow().last(), Some(&Request::Lab(Lab::Pause)));
+    editor.click("lab.use.1");
+    assert_eq!(editor.document().quality().light_steps, 21);
+    editor.click("lab.most_accurate");
+    assert_eq!(editor.document().quality().light_steps, 3, "within 50 ms");
+    assert!(editor.has_label("In use: light_steps=3"), "it says so");
+    editor.click("lab.governor");
+    assert!(editor.harness.state().ui.lab.governs, "the front has two settings");
 }

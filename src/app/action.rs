@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::lab::accuracy::Setting;
+use crate::lab::bench::Rounds;
+use crate::lab::suite::SuiteKind;
+use crate::render::truth::Goal;
 use crate::scene::{Camera, Quality, QualityLevel, Scene};
 
 /// One wish of the user.
@@ -69,10 +73,43 @@ pub enum Request {
     Export(Export),
     /// Take or refuse the document that a crash left behind.
     Recover(bool),
+    /// Something about measuring.
+    Lab(Lab),
     /// Full screen on or off.
     ToggleFullScreen,
     /// Close the window.
     Quit,
+}
+
+/// A wish about measuring.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Lab {
+    /// Measure this; what was being measured is left.
+    Start(Box<Order>),
+    /// Wait, and keep what was measured.
+    Pause,
+    /// Go on.
+    Resume,
+    /// Leave it, and keep what was measured.
+    Stop,
+}
+
+/// What is to be measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Order {
+    /// Settings of quality, of the document's sky as it is.
+    Sweep {
+        /// The settings; the first is the one in use.
+        settings: Vec<Setting>,
+        /// Truths to measure against.
+        goals: Vec<Goal>,
+        /// Width and height in pixels.
+        size: [u32; 2],
+        /// Timed rounds.
+        rounds: u32,
+    },
+    /// A fixed set.
+    Suite(SuiteKind, Rounds),
 }
 
 /// What to do with unsaved changes.
@@ -158,6 +195,7 @@ impl Request {
             Self::Screenshot => "screenshot",
             Self::Export(_) => "export",
             Self::Recover(_) => "recover",
+            Self::Lab(_) => "measure",
             Self::ToggleFullScreen => "full screen",
             Self::Quit => "quit",
         }

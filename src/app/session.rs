@@ -115,7 +115,11 @@ impl Session {
                 }
                 Some(Request::Recover(taken))
             }
-            Request::Browse(_) | Request::Screenshot | Request::Export(_) | Request::ToggleFullScreen => Some(request),
+            Request::Browse(_)
+            | Request::Screenshot
+            | Request::Export(_)
+            | Request::Lab(_)
+            | Request::ToggleFullScreen => Some(request),
         }
     }
 

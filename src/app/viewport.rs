@@ -3,13 +3,14 @@
 use std::time::{Duration, Instant};
 
 use super::document::Document;
+use super::lab::Governor;
 use super::statistics::Statistics;
 use super::truth::{CompareJob, Outcome, Truths, Wishes};
 use crate::gpu::Gpu;
 use crate::plan::FramePlan;
 use crate::render::{Progress, RenderError, Renderer};
-use crate::scene::{Output, Quality, Scene, UpdateFraction};
-use crate::ui::Readout;
+use crate::scene::{Frame, Output, Quality, Scene, UpdateFraction};
+use crate::ui::{LabState, Readout};
 
 /// Work sent to the device at a time. The panels' frame comes after at most one of these.
 const SLICE: Duration = Duration::from_millis(30);
@@ -27,6 +28,13 @@ pub(super) struct Inputs {
     pub(super) quality: Quality,
     pub(super) size: [u32; 2],
     pub(super) time_secs: f64,
+}
+
+impl Inputs {
+    fn frame(&self) -> Frame<'_> {
+        let Self { scene, quality, size, time_secs } = self;
+        Frame { scene, quality, size: *size, time_secs: *time_secs, output: Output::Display }
+    }
 }
 
 /// What a step of the viewport led to.
@@ -59,6 +67,9 @@ pub(super) struct Viewport {
     pub(super) truths: Truths,
     /// Whether what the truths were made from has changed since it was last asked.
     has_moved_on: bool,
+    governor: Governor,
+    /// Frame time that the governor holds, in milliseconds, while it is on.
+    budget_ms: Option<f64>,
 }
 
 impl Viewport {
@@ -75,6 +86,8 @@ impl Viewport {
             statistics: Statistics::default(),
             truths: Truths::new(),
             has_moved_on: false,
+            governor: Governor::default(),
+            budget_ms: None,
         })
     }
 
@@ -83,11 +96,21 @@ impl Viewport {
         &self.renderer
     }
 
+    /// Follows what the lab says of the governor; returns what the governor says of itself.
+    pub(super) fn govern(&mut self, lab: &LabState) -> Option<String> {
+        self.governor.follow(&lab.view);
+        self.budget_ms = lab.governs.then_some(lab.frame_budget_ms);
+        self.budget_ms.and_then(|_| self.governor.said())
+    }
+
     /// Begins a frame if one is due, and sends the next slice of work.
     pub(super) fn step(&mut self, document: &Document, size: [u32; 2]) -> Result<Step, RenderError> {
         let inputs = Inputs {
             scene: document.preset().scene.clone(),
-            quality: document.quality().clone(),
+            quality: match self.budget_ms {
+                Some(_) => self.governor.quality(document.quality()),
+                None => document.quality().clone(),
+            },
             size,
             time_secs: document.time_secs(),
         };
@@ -95,7 +118,7 @@ impl Viewport {
         if self.refused.as_ref() == Some(&inputs) {
             return Ok(Step::Idle);
         }
-        let outcome = self.step_with(&inputs, document);
+        let outcome = self.step_with(&inputs);
         if outcome.is_err() {
             self.refused = Some(inputs);
             self.since = None;
@@ -104,7 +127,7 @@ impl Viewport {
         outcome
     }
 
-    fn step_with(&mut self, inputs: &Inputs, document: &Document) -> Result<Step, RenderError> {
+    fn step_with(&mut self, inputs: &Inputs) -> Result<Step, RenderError> {
         let kept_still = match &self.seen {
             Some((seen, since)) if seen == inputs => since.elapsed(),
             _ => {
@@ -121,7 +144,7 @@ impl Viewport {
             Some(since) => changed && since.elapsed() > PATIENCE && kept_still > SETTLED,
         };
         if due {
-            self.renderer.begin(&document.frame(inputs.size, Output::Display))?;
+            self.renderer.begin(&inputs.frame())?;
             self.begun = Some(inputs.clone());
             self.since = Some(Instant::now());
         }
@@ -151,9 +174,12 @@ impl Viewport {
                 self.compiling = false;
                 self.since = None;
                 // A picture drawn as the one before was planned, while its own shaders compile, does not count.
-                let planned = report.plan == FramePlan::new(&document.frame(inputs.size, Output::Display));
+                let planned = report.plan == FramePlan::new(&inputs.frame());
                 self.left = if planned { self.left.saturating_sub(1) } else { self.left.max(1) };
                 self.refused = None;
+                if let Some(budget_ms) = self.budget_ms.filter(|_| planned) {
+                    self.governor.frame(report.total_ms, budget_ms);
+                }
                 self.statistics.add(*report);
                 Ok(Step::Finished)
             }

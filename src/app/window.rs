@@ -11,9 +11,10 @@ use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Fullscreen, Window, WindowId};
 
-use super::action::{Browse, Export, Request, Still};
+use super::action::{self, Browse, Export, Request, Still};
 use super::egui_glue::{Egui, Place};
 use super::hands::Hands;
+use super::lab::{Lab, News};
 use super::recovery::Recovery;
 use super::surface::WindowSurface;
 use super::viewport::{Step, Viewport};
@@ -39,6 +40,7 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
     let event_loop = event_loop.map_err(|error| NoDisplay(error.to_string()))?;
     let (recovery, left) = Recovery::open(&session.folders.state);
     let mut app = App {
+        lab: Lab::default(),
         proxy: event_loop.create_proxy(),
         worker: Worker::new(event_loop.create_proxy()),
         session,
@@ -60,6 +62,7 @@ struct App {
     adapter: AdapterChoice,
     recovery: Recovery,
     worker: Worker,
+    lab: Lab,
     proxy: EventLoopProxy<Event>,
     /// What exists only while there is a window.
     live: Option<Live>,
@@ -191,6 +194,7 @@ impl ApplicationHandler<Event> for App {
             Event::Accessibility(event) => self.accessibility(event),
             Event::Worker(message) => self.report(event_loop, message),
             Event::Compared(compared) => self.take_comparison(*compared),
+            Event::Lab(news) => self.take_measured(*news),
         }
         if let Some(live) = &mut self.live {
             live.draw_within(Duration::ZERO);
@@ -207,6 +211,7 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.lab.leave();
         self.live = None;
     }
 }
@@ -249,6 +254,7 @@ impl App {
         let size = self.session.ui.viewport.size_px(live.egui.context().pixels_per_point());
         let mut fastest = FASTEST_PANELS;
         if self.session.ui.viewport.rect.width() >= 1.0 && self.session.ui.viewport.rect.height() >= 1.0 {
+            self.session.ui.lab.view.governor = live.viewport.govern(&self.session.ui.lab);
             match live.viewport.step(&self.session.document, size) {
                 Ok(Step::Idle) => is_idle = true,
                 Ok(Step::Busy) => {
@@ -362,6 +368,7 @@ impl App {
                     export,
                 });
             }
+            Request::Lab(wish) => self.measure(wish),
             Request::Recover(true) => self.recovery.keep(&self.session.document),
             Request::Recover(false) => self.recovery.clear(),
             Request::ToggleFullScreen => {
@@ -370,6 +377,22 @@ impl App {
                 live.window.set_fullscreen(full);
             }
             Request::New | Request::Open(_) | Request::Save | Request::SaveAs(_) | Request::Answer(_) => {}
+        }
+    }
+
+    /// Does what the lab's panel wants.
+    fn measure(&mut self, wish: action::Lab) {
+        let Some(live) = &self.live else { return };
+        let preset = self.session.document.preset();
+        if let Some(view) = self.lab.fulfil(wish, (&live.gpu, preset), &self.proxy) {
+            self.session.ui.lab.view = view;
+        }
+    }
+
+    /// Takes in what was measured.
+    fn take_measured(&mut self, news: News) {
+        if let Some(view) = self.lab.take(news) {
+            self.session.ui.lab.view = view;
         }
     }
 

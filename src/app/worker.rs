@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use winit::event_loop::EventLoopProxy;
 
 use super::action::{Browse, Export, Still};
+use super::lab::News;
 use super::truth::{CompareJob, Compared};
 use crate::export::exr::ExrOptions;
 use crate::files::{About, save_exr, save_png};
@@ -23,6 +24,8 @@ pub(super) enum Event {
     Worker(Message),
     /// Pictures were compared.
     Compared(Box<Compared>),
+    /// Something was measured.
+    Lab(Box<News>),
 }
 
 impl From<egui_winit::accesskit_winit::Event> for Event {
@@ -145,7 +148,7 @@ impl Worker {
 
 async fn dialog(purpose: &Browse, start: &Path) -> Option<rfd::FileHandle> {
     let dialog = rfd::AsyncFileDialog::new().set_directory(start);
-    let skies = ["ron", "exr", "png"];
+    let skies = ["ron", "exr", "png", "json"];
     match purpose {
         Browse::Open => dialog.add_filter("Skies", &skies).pick_file().await,
         Browse::SaveAs => dialog.add_filter("Preset", &["ron"]).set_file_name("sky.ron").save_file().await,

@@ -16,7 +16,7 @@ use crate::export::atomic::write_atomically;
 use crate::files::{self, Sky};
 use crate::gpu::{Gpu, TimingSource};
 use crate::lab::accuracy::{self, Axis, Measured};
-use crate::lab::sweep::{At, Plan, Sweep};
+use crate::lab::sweep::{At, Plan, Sweep, goals};
 use crate::plan::Integrator;
 use crate::render::Renderer;
 use crate::render::truth::Goal;
@@ -87,14 +87,9 @@ impl AccuracyArgs {
                 return Err(Usage(format!("{name} must be above 0")).into());
             }
         }
-        let tolerance = self.tolerance;
-        let converged = Goal::Converged { tolerance, levels: 8 };
-        let traced = Goal::PathTraced { tolerance, samples: self.samples, scatterings: None, seed: 0 };
-        Ok(match self.truth {
-            TruthArg::Converged => vec![converged],
-            TruthArg::PathTraced => vec![traced],
-            TruthArg::Both => vec![converged, traced],
-        })
+        let converged = self.truth != TruthArg::PathTraced;
+        let paths = (self.truth != TruthArg::Converged).then_some(self.samples);
+        Ok(goals(self.tolerance, converged, paths))
     }
 
     fn skies(&self) -> Result<Vec<Sky>> {

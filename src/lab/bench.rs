@@ -31,7 +31,7 @@ impl Case {
 }
 
 /// How often to measure.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rounds {
     /// Rounds over all cases that are thrown away: shaders compile, caches fill.
     pub warm_up: u32,
@@ -92,7 +92,7 @@ pub struct Row {
     /// Totals of the frames, in milliseconds.
     pub total: Vec<f64>,
     /// Total of the last frame that warmed up, in milliseconds.
-    warm_up_ms: f64,
+    pub warm_up_ms: f64,
 }
 
 impl Row {

@@ -148,6 +148,11 @@ pub fn textures(folder: &Path) -> [PathBuf; 2] {
 /// Sides of the two textures, in pixels (table 10).
 pub const TEXTURE_SIDE: u32 = 256;
 
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 ..= 255")]
+fn byte(value: f32) -> u8 {
+    (value.clamp(0.0, 1.0) * 255.0).round() as u8
+}
+
 /// The pixels of the two textures: red, green and blue of each. The first holds one round cloud whose values are all the
 /// same (figure 51a). The second stands for the one by Högfeldt, which is not ours to copy: clouds of several sizes,
 /// coverages, heights and altitudes.
@@ -170,7 +175,6 @@ pub fn texture_pixels() -> [Vec<u8>; 2] {
         let t = ((1.0 - (x - cx).hypot(y - cy) / radius) / 0.35).clamp(0.0, 1.0);
         t * t * (3.0 - 2.0 * t)
     };
-    let byte = |value: f32| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
     let side = TEXTURE_SIDE as f32;
     let (mut one, mut many) = (Vec::new(), Vec::new());
     for row in 0..TEXTURE_SIDE {

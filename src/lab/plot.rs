@@ -78,7 +78,32 @@ const SHAPES: [&str; 7] = [
     "M-3.2 -5.4L0 -2.2L3.2 -5.4L5.4 -3.2L2.2 0L5.4 3.2L3.2 5.4L0 2.2L-3.2 5.4L-5.4 3.2L-2.2 0L-5.4 -3.2Z",
 ];
 
+/// A logarithmic axis, for whoever draws it otherwise than as SVG.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ruler {
+    /// Decimal logarithms of the ends.
+    pub range: [f64; 2],
+    /// Decimal logarithms of the ticks, with the numbers of those that have one.
+    pub ticks: Vec<(f64, Option<String>)>,
+}
+
+impl Ruler {
+    /// Where a value lies between the ends, 0 to 1; `None` for what has no logarithm.
+    pub fn place(&self, value: f64) -> Option<f64> {
+        Some((log(value)? - self.range[0]) / (self.range[1] - self.range[0]))
+    }
+}
+
 impl Plot {
+    /// The axes that hold all its points.
+    pub fn rulers(&self) -> [Ruler; 2] {
+        [0, 1].map(|side| {
+            let axis = Axis::new(self.shown().map(|point| point[side]));
+            let ticks = axis.ticks.iter().map(|tick| (tick.log(), tick.numbered.then(|| axis.plain_number(*tick))));
+            Ruler { range: axis.range, ticks: ticks.collect() }
+        })
+    }
+
     /// Draws it.
     pub fn svg(&self) -> Drawing {
         let left_out =

@@ -15,6 +15,14 @@ const SLOW_MS: f64 = 2000.0;
 /// Work on a truth in one step.
 const STEP: Duration = Duration::from_millis(200);
 
+/// The truths to measure against, until they are within a tolerance: the converged march, paths of at most so many
+/// samples, or both.
+pub fn goals(tolerance: f32, converged: bool, paths: Option<u32>) -> Vec<Goal> {
+    let converged = converged.then_some(Goal::Converged { tolerance, levels: 8 });
+    let traced = paths.map(|samples| Goal::PathTraced { tolerance, samples, scatterings: None, seed: 0 });
+    converged.into_iter().chain(traced).collect()
+}
+
 /// What is measured.
 #[derive(Clone, Debug)]
 pub struct Plan {

@@ -48,9 +48,14 @@ impl Table {
         Self { title: title.into(), columns: columns.to_vec(), rows: Vec::new() }
     }
 
+    /// All cells as they are shown.
+    pub fn shown(&self) -> Vec<Vec<String>> {
+        self.rows.iter().map(|row| row.iter().map(Cell::shown).collect()).collect()
+    }
+
     /// Aligned columns for a terminal; numbers to the right.
     pub fn plain(&self) -> String {
-        let shown: Vec<Vec<String>> = self.rows.iter().map(|row| row.iter().map(Cell::shown).collect()).collect();
+        let shown = self.shown();
         let width = |column: usize| {
             let cells = shown.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
             cells.chain([self.columns[column].chars().count()]).max().unwrap_or(0)

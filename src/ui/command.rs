@@ -39,6 +39,8 @@ pub enum Command {
     Panel,
     /// Timing overlay on or off.
     Overlay,
+    /// Lab on or off.
+    Lab,
     /// Refinement at rest on or off.
     Refine,
     /// Comparison with the truth on or off.
@@ -58,7 +60,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 22] = [
+const TABLE: [(Command, Modifiers, Key, &str); 23] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -75,6 +77,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 22] = [
     (Command::Presets, Modifiers::NONE, Key::F2, "Preset list"),
     (Command::Panel, Modifiers::NONE, Key::F3, "Parameter panel"),
     (Command::Overlay, Modifiers::NONE, Key::F10, "Timing overlay"),
+    (Command::Lab, Modifiers::NONE, Key::F9, "Lab"),
     (Command::Refine, Modifiers::NONE, Key::F4, "Refine the picture at rest"),
     (Command::Compare, Modifiers::NONE, Key::F5, "Compare with the truth"),
     (Command::Keep, Modifiers::NONE, Key::F6, "Stop refining and keep the picture"),
@@ -142,6 +145,7 @@ impl Command {
             Self::Presets => state.show_presets = Some(!state.presets_visible(ui.ctx().content_rect().width())),
             Self::Panel => state.show_panel = !state.show_panel,
             Self::Overlay => state.show_overlay = !state.show_overlay,
+            Self::Lab => state.lab.is_open = !state.lab.is_open,
             Self::Refine => state.truth.refines = !state.truth.refines,
             Self::Compare => state.truth.toggle(),
             Self::Keep => state.truth.is_kept = !state.truth.is_kept,
@@ -168,6 +172,7 @@ impl Command {
     pub(super) fn is_on(self, state: &State) -> bool {
         match self {
             Self::Refine => state.truth.refines,
+            Self::Lab => state.lab.is_open,
             Self::Compare => state.truth.compares(),
             Self::Keep => state.truth.is_kept,
             _ => false,

@@ -2,6 +2,7 @@
 
 mod command;
 mod dialogs;
+mod lab;
 mod overlay;
 mod panel;
 mod presets;
@@ -14,6 +15,7 @@ mod viewport;
 
 pub use command::Command;
 pub use dialogs::{Dialog, ExportForm};
+pub use lab::{LabState, LabView, Measured, Phase};
 pub use overlay::{PassLine, Readout};
 pub use panel::PanelState;
 pub use presets::{Entry, Library};
@@ -53,6 +55,8 @@ pub struct State {
     pub viewport: ViewportState,
     /// Refinement and comparison with the truth.
     pub truth: TruthState,
+    /// Measuring.
+    pub lab: LabState,
     /// What a thread is busy with, for the status line.
     pub busy: Option<String>,
 }
@@ -70,6 +74,7 @@ impl Default for State {
             library: Library::default(),
             viewport: ViewportState::default(),
             truth: TruthState::default(),
+            lab: LabState::default(),
             busy: None,
         }
     }
@@ -136,10 +141,13 @@ pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Reado
     });
     let area = central.response.rect;
     if state.show_overlay && !state.hide_all {
-        overlay::show(ui.ctx(), area, readout);
+        overlay::show(ui.ctx(), area, readout, &mut state.lab);
     }
     if !state.hide_all {
         truth::show(ui.ctx(), area, state);
+    }
+    if state.lab.is_open && !state.hide_all {
+        lab::show(ui.ctx(), area, (&mut state.lab, document), &mut actions);
     }
     dialogs::show(ui.ctx(), state, document, &mut actions);
     state.toasts.show(ui.ctx(), area);

@@ -2,6 +2,7 @@
 
 use egui::{Grid, Id, Rect, RichText, ScrollArea, Ui};
 
+use super::LabState;
 use crate::plan::Reason;
 
 /// One pass with its time.
@@ -44,7 +45,7 @@ fn millis(value: Option<f64>) -> String {
 }
 
 /// Draws the overlay in the upper left corner of `area`.
-pub(super) fn show(context: &egui::Context, area: Rect, readout: &Readout) {
+pub(super) fn show(context: &egui::Context, area: Rect, readout: &Readout, lab: &mut LabState) {
     let frame = egui::Frame::window(&context.global_style()).inner_margin(8.0);
     let size = egui::vec2((area.width() - 40.0).clamp(120.0, 330.0), (area.height() - 44.0).max(60.0));
     egui::Area::new(Id::unique("timing overlay")).fixed_pos(area.min + egui::vec2(10.0, 10.0)).show(context, |ui| {
@@ -54,6 +55,12 @@ pub(super) fn show(context: &egui::Context, area: Rect, readout: &Readout) {
             ScrollArea::vertical().max_height(size.y).max_width(size.x).show(ui, |ui| {
                 ui.set_width(size.x);
                 contents(ui, readout);
+                ui.add_space(6.0);
+                let measure = ui.button("Measure…").on_hover_text("The table of the thesis, and other sets (F9)");
+                super::row::name(ui, &measure, "Measure", "overlay.measure");
+                if measure.clicked() {
+                    lab.open_suites();
+                }
             });
         });
     });

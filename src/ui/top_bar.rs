@@ -41,7 +41,7 @@ fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<
     });
     ui.menu_button("View", |ui| {
         let groups = [
-            &[Command::Presets, Command::Panel, Command::Overlay][..],
+            &[Command::Presets, Command::Panel, Command::Overlay, Command::Lab][..],
             &[Command::HideAll, Command::FullScreen],
             &[Command::ResetCamera, Command::Brighter, Command::Darker],
             &[Command::Refine, Command::Keep, Command::Compare],

@@ -47,7 +47,8 @@ impl App {
         if live.viewport.has_moved_on() {
             self.session.ui.truth.is_kept = false;
         }
-        if !is_idle {
+        // What is being measured is not disturbed.
+        if !is_idle || self.session.ui.lab.is_running() {
             return Outcome::default();
         }
         let moves = self.session.document.is_playing() || live.hands.are_busy();

@@ -81,12 +81,24 @@ impl Axis {
             let power = exponent.abs();
             return format!("{factor}10<tspan dy=\"-5\" font-size=\"10\">{sign}{power}</tspan>");
         }
-        let zeros = |count: i32| "0".repeat(count.unsigned_abs() as usize);
-        if exponent >= 0 {
-            format!("{mantissa}{}", zeros(exponent))
-        } else {
-            format!("0.{}{mantissa}", zeros(exponent + 1))
+        in_full(tick)
+    }
+
+    /// The same as plain text.
+    pub(super) fn plain_number(&self, tick: Tick) -> String {
+        if self.range[0] < -4.0 - 1e-9 || self.range[1] > 4.0 + 1e-9 {
+            return format!("{}e{}", tick.mantissa, tick.exponent);
         }
+        in_full(tick)
+    }
+}
+
+fn in_full(Tick { mantissa, exponent, .. }: Tick) -> String {
+    let zeros = |count: i32| "0".repeat(count.unsigned_abs() as usize);
+    if exponent >= 0 {
+        format!("{mantissa}{}", zeros(exponent))
+    } else {
+        format!("0.{}{mantissa}", zeros(exponent + 1))
     }
 }
 
