@@ -15,8 +15,9 @@ use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
 use crate::files::{self, Sky};
 use crate::gpu::{Gpu, TimingSource};
-use crate::lab::accuracy::{self, Axis, Measured};
+use crate::lab::accuracy::{self, AccuracyError, Axis, Measured};
 use crate::lab::sweep::{At, Plan, Sweep, goals};
+use crate::lab::verify::anywhere;
 use crate::plan::Integrator;
 use crate::render::Renderer;
 use crate::render::truth::Goal;
@@ -44,6 +45,12 @@ pub(super) struct AccuracyArgs {
     /// Paths of each pixel at most.
     #[arg(long, default_value = "64", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     samples: u32,
+    /// Instead of the sky's own camera and sun, so many of each that a hash has drawn and nobody has tuned.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    views: Option<u32>,
+    /// Jitters of the march to compare with: two or more tell its noise from what all of them share.
+    #[arg(long, default_value = "1", value_parser = clap::value_parser!(u32).range(1..=64))]
+    seeds: u32,
     /// Timed rounds over all settings.
     #[arg(long, default_value = "15", value_parser = clap::value_parser!(u32).range(1..=1000))]
     rounds: u32,
@@ -113,7 +120,13 @@ pub(super) fn run(args: &AccuracyArgs) -> Result<()> {
         let mut scene = sky.preset.scene.clone();
         edit::apply(&args.edits.sets, &mut scene, &mut quality)?;
         let settings = accuracy::settings(&quality, &axes).map_err(|error| Usage(error.to_string()))?;
-        cases.push((sky.preset.name, scene, settings));
+        match args.views {
+            None => cases.push((sky.preset.name, scene, settings)),
+            Some(views) => {
+                let name = |view: u32| format!("{}, view {view}", sky.preset.name);
+                cases.extend((0..views).map(|view| (name(view), anywhere(&scene, view), settings.clone())));
+            }
+        }
     }
     let gpu = Gpu::headless(&args.device.choice())?;
     let mut renderer = Renderer::new(&gpu)?;
@@ -122,9 +135,18 @@ pub(super) fn run(args: &AccuracyArgs) -> Result<()> {
     interrupt::watch();
     let several = cases.len() > 1;
     for (name, scene, settings) in cases {
-        let plan = Plan { scene, size: args.size, settings, goals: goals.clone(), rounds: args.rounds };
+        let plan =
+            Plan { scene, size: args.size, settings, goals: goals.clone(), rounds: args.rounds, seeds: args.seeds };
         let mut sweep = Sweep::new(plan);
-        run_sweep(&mut sweep, &mut renderer, &name)?;
+        if let Err(error) = run_sweep(&mut sweep, &mut renderer, &name) {
+            // A view that nobody chose may show no cloud.
+            let is_empty = error.downcast_ref::<AccuracyError>().is_some_and(AccuracyError::is_of_no_pixels);
+            if !(is_empty && args.views.is_some()) {
+                return Err(error);
+            }
+            eprintln!("{name}: {error}");
+            continue;
+        }
         report(args, &sweep, (&name, several), source)?;
         if sweep.at() != At::Done {
             return Err(Interrupted("what was measured so far is above".to_owned()).into());

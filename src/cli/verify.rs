@@ -1,4 +1,4 @@
-//! `verify`: checks of whole frames on this machine.
+//! `verify`: checks of whole frames on this machine: known light first, then skies.
 
 use anyhow::Result;
 use clap::Args;
@@ -6,7 +6,7 @@ use clap::Args;
 use super::{Device, print};
 use crate::files;
 use crate::gpu::Gpu;
-use crate::lab::verify::{Check, single_scattering_agrees, stays_finite};
+use crate::lab::verify::{Check, analytic, single_scattering_agrees, stays_finite};
 use crate::render::Renderer;
 use crate::scene::builtin::BUILTINS;
 
@@ -42,7 +42,10 @@ pub(super) fn run(args: &VerifyArgs) -> Result<()> {
     print(&format!("{}\n", gpu.description()))?;
     let mut renderer = Renderer::new(&gpu)?;
     let (size, paths, views) = if args.full { ([64, 36], 128, 20) } else { ([32, 18], 64, 4) };
-    let mut all: Vec<Check> = Vec::new();
+    let mut all: Vec<Check> = analytic(&mut renderer, args.full)?;
+    for check in &all {
+        print(&format!("{}\n", check.line()))?;
+    }
     for sky in &skies {
         let named = (sky.preset.name.as_str(), &sky.preset.scene);
         let mut checks = single_scattering_agrees(&mut renderer, named, (size, paths), &mut |_| {})?;

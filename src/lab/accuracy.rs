@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::bench::Stats;
 use super::flip::{self, PIXELS_PER_DEGREE};
-use super::metrics::{Errors, Estimate, MetricError, Reference, mask};
+use super::metrics::{Errors, Estimate, MetricError, Reference, Split, mask};
 use super::pareto::{self, Point};
 use super::plot::{Plot, Series};
 use super::table::{Cell, Table};
@@ -52,6 +52,13 @@ pub enum AccuracyError {
     /// Too many settings.
     #[error("the axes make {0} settings, but at most {MAX_SETTINGS} are measured; leave out some values")]
     TooMany(usize),
+}
+
+impl AccuracyError {
+    /// Whether there was nothing to measure.
+    pub fn is_of_no_pixels(&self) -> bool {
+        matches!(self, Self::Metric(MetricError::NoPixels))
+    }
 }
 
 /// Parameters that a whole march through the middle of each pixel does without.
@@ -245,6 +252,8 @@ pub struct Against {
     pub whole: Errors,
     /// Mean FLIP of the tone-mapped picture, 0 to 1.
     pub flip: f64,
+    /// The error over clouds in its two parts, where several seeds were measured.
+    pub split: Option<Split>,
 }
 
 /// What was measured of one setting.
@@ -278,14 +287,23 @@ pub(super) fn compared(
     renderer: &mut Renderer,
     scene: &Scene,
     setting: &Setting,
-    (truths, size): (&[TruthImage], [u32; 2]),
+    (truths, size, seeds): (&[TruthImage], [u32; 2], u32),
 ) -> Result<Measured, AccuracyError> {
     let quality = of_still(&setting.quality);
     let frame = still(scene, &quality, size);
+    let mut others = Vec::new();
+    for seed in 1..seeds {
+        renderer.set_jitter_seed(seed);
+        let rendered = renderer.render(&frame);
+        renderer.set_jitter_seed(0);
+        rendered?;
+        others.push(rgb(&renderer.linear()?.rgba));
+    }
     renderer.render(&frame)?;
     let light = rgb(&renderer.linear()?.rgba);
     let display = shown(&renderer.display_rgba8()?.1);
-    let against = truths.iter().map(|truth| compare(scene, truth, &light, &display)).collect::<Result<Vec<_>, _>>()?;
+    let all = truths.iter().map(|truth| compare(scene, truth, (&light, &others), &display));
+    let against = all.collect::<Result<Vec<_>, _>>()?;
     let counts = renderer.counted_reads(&frame)?;
     Ok(Measured { setting: setting.clone(), march_ms: Vec::new(), counts, against })
 }
@@ -306,20 +324,28 @@ pub(super) fn timed(
 fn compare(
     scene: &Scene,
     truth: &TruthImage,
-    light: &[[f32; 3]],
+    (light, other_seeds): (&[[f32; 3]], &[Vec<[f32; 3]>]),
     display: &[[f32; 3]],
 ) -> Result<Against, AccuracyError> {
     let width = truth.size[0] as usize;
     let clouds = mask::cloud_pixels(&truth.opacity, scene, truth.size);
     let everything = mask::without(&vec![true; light.len()], &mask::sun_disc(scene, truth.size));
-    let reference = |mask: Option<&Vec<bool>>| -> Result<Errors, MetricError> {
-        let variance = truth.variance.as_deref();
-        Reference { pixels: &truth.light, variance, mask: mask.map(Vec::as_slice), width }.errors(light)
+    fn against<'a>(truth: &'a TruthImage, mask: Option<&'a Vec<bool>>) -> Reference<'a> {
+        let (variance, width) = (truth.variance.as_deref(), truth.size[0] as usize);
+        Reference { pixels: &truth.light, variance, mask: mask.map(Vec::as_slice), width }
+    }
+    let of_clouds = against(truth, clouds.as_ref());
+    let split = if other_seeds.is_empty() {
+        None
+    } else {
+        let seeds: Vec<&[[f32; 3]]> = std::iter::once(light).chain(other_seeds.iter().map(Vec::as_slice)).collect();
+        Some(of_clouds.split(&seeds)?)
     };
     Ok(Against {
         integrator: truth.integrator,
-        clouds: reference(clouds.as_ref())?,
-        whole: reference(everything.as_ref())?,
+        clouds: of_clouds.errors(light)?,
+        whole: against(truth, everything.as_ref()).errors(light)?,
+        split,
         flip: flip::flip(&truth.shown, display, width, PIXELS_PER_DEGREE)?.mean,
     })
 }
@@ -388,7 +414,10 @@ pub fn table(title: &str, rows: &[Measured], source: &str) -> Table {
         "view + light steps / ray",
         "on front",
     ];
-    let mut table = Table::new(format!("{title} ({source})"), &columns);
+    // Over several seeds the error falls into what stays of their mean and what does not.
+    let has_seeds = rows.iter().flat_map(|row| &row.against).any(|against| against.split.is_some());
+    let split_columns = if has_seeds { &["same for all seeds %", "noise %"][..] } else { &[] };
+    let mut table = Table::new(format!("{title} ({source})"), &[&columns[..], split_columns].concat());
     for (index, row) in rows.iter().enumerate() {
         let time = Stats::of(&row.march_ms);
         let per_ray =
@@ -416,6 +445,12 @@ pub fn table(title: &str, rows: &[Measured], source: &str) -> Table {
                 per_ray(row.counts.view_steps + row.counts.light_steps),
                 Cell::text(if is_front { "yes" } else { "" }),
             ]);
+            if let (Some(row), true) = (table.rows.last_mut(), has_seeds) {
+                let root = |part: fn(&Split) -> f64| {
+                    Cell::Number(against.split.as_ref().map(|split| part(split).max(0.0).sqrt() * 100.0), 2)
+                };
+                row.extend([root(|split| split.bias_squared.value), root(|split| split.variance.value)]);
+            }
         }
     }
     table

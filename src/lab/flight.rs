@@ -2,11 +2,14 @@
 
 use std::time::Instant;
 
+use glam::Vec3;
+
 use super::bench::{Case, PassSamples, Stats, add_passes};
+use super::metrics::mask::directions;
 use super::table::{Cell, Table};
 use crate::gpu::TimingSource;
 use crate::render::{RenderError, Renderer};
-use crate::scene::{Camera, Frame, Output, Quality, UpdateFraction};
+use crate::scene::{Camera, Frame, Output, Quality, Scene, UpdateFraction, direction};
 
 /// Scene time from one frame to the next, in seconds: the rate that the flight should at least reach.
 const FRAME_SECS: f64 = 1.0 / 8.0;
@@ -31,6 +34,8 @@ pub struct Flight {
     pub passes: Vec<PassSamples>,
     /// How far the last picture is from the same frame computed whole.
     pub trail: Trail,
+    /// How far its clouds are from those of the picture before, each pixel looked up where its cloud was: what flickers.
+    pub warp: Trail,
 }
 
 /// What reprojection leaves behind a moving camera: differences of the display's 8-bit levels, the greatest of the three
@@ -48,11 +53,15 @@ pub struct Trail {
 impl Trail {
     /// The differences of two pictures of four channels.
     fn between(seen: &[u8], expected: &[u8]) -> Self {
-        let mut differences: Vec<u8> = seen
+        let differences: Vec<u8> = seen
             .chunks_exact(4)
             .zip(expected.chunks_exact(4))
             .map(|(a, b)| (0..3).map(|channel| a[channel].abs_diff(b[channel])).max().unwrap_or(0))
             .collect();
+        Self::of(differences)
+    }
+
+    fn of(mut differences: Vec<u8>) -> Self {
         if differences.is_empty() {
             return Self::default();
         }
@@ -88,9 +97,19 @@ pub fn camera_at(start: &Camera, time_secs: f64) -> Camera {
 /// If a frame cannot be rendered.
 pub fn fly(renderer: &mut Renderer, case: &Case, frames: u32) -> Result<Flight, RenderError> {
     let mut scene = case.scene.clone();
-    let mut flight =
-        Flight { frames, frames_per_sec: 0.0, frame_ms: Vec::new(), passes: Vec::new(), trail: Trail::default() };
+    let mut flight = Flight {
+        frames,
+        frames_per_sec: 0.0,
+        frame_ms: Vec::new(),
+        passes: Vec::new(),
+        trail: Trail::default(),
+        warp: Trail::default(),
+    };
+    let mut before = None;
     for index in 0..WARM_UP + frames {
+        if index + 1 == WARM_UP + frames && index > 0 {
+            before = Some((scene.camera.clone(), renderer.display_rgba8()?.1));
+        }
         let time_secs = f64::from(index) * FRAME_SECS;
         scene.camera = camera_at(&case.scene.camera, time_secs);
         let frame =
@@ -107,17 +126,84 @@ pub fn fly(renderer: &mut Renderer, case: &Case, frames: u32) -> Result<Flight, 
     let (_, seen) = renderer.display_rgba8()?;
     let whole = Quality { update: UpdateFraction::Full, ..case.quality.clone() };
     let time_secs = f64::from(WARM_UP + frames - 1) * FRAME_SECS;
-    renderer.render(&Frame { scene: &scene, quality: &whole, size: case.size, time_secs, output: Output::Display })?;
-    let (_, expected) = renderer.display_rgba8()?;
+    renderer.render(&Frame { scene: &scene, quality: &whole, size: case.size, time_secs, output: Output::Linear })?;
+    let (size, expected) = renderer.display_rgba8()?;
     flight.trail = Trail::between(&seen, &expected);
+    if let Some((camera, picture)) = before {
+        let distances = renderer.linear()?.distance_m;
+        let now = View { camera: &scene.camera, picture: &seen, size };
+        let wind = wind_in(&scene, FRAME_SECS);
+        flight.warp = warp(now, &distances, View { camera: &camera, picture: &picture, size }, wind);
+    }
     Ok(flight)
+}
+
+/// A picture and the camera it was made with.
+#[derive(Clone, Copy)]
+struct View<'a> {
+    camera: &'a Camera,
+    picture: &'a [u8],
+    size: [u32; 2],
+}
+
+impl View<'_> {
+    fn eye(self) -> Vec3 {
+        Vec3::new(self.camera.east_m, self.camera.height_m, self.camera.south_m)
+    }
+
+    /// Red, green and blue where a place of the world is seen, between the four pixels around it; `None` outside.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked to lie in the picture")]
+    fn colour_at(self, place: Vec3) -> Option<[f32; 3]> {
+        let [forward, right, up] = self.camera.axes();
+        let [across, high] = self.camera.half_tangents(self.size);
+        let offset = place - self.eye();
+        let depth = offset.dot(forward);
+        let [width, height] = self.size.map(|side| side as f32);
+        let x = (0.5 + 0.5 * offset.dot(right) / (depth * across)) * width - 0.5;
+        let y = (0.5 - 0.5 * offset.dot(up) / (depth * high)) * height - 0.5;
+        if !(depth > 0.0 && x >= 0.0 && y >= 0.0 && x < width - 1.0 && y < height - 1.0) {
+            return None;
+        }
+        let texel = |dx: usize, dy: usize, channel: usize| {
+            let at = ((y as usize + dy) * self.size[0] as usize + x as usize + dx) * 4 + channel;
+            self.picture.get(at).map_or(0.0, |value| f32::from(*value))
+        };
+        Some([0, 1, 2].map(|channel| {
+            let row = |dy: usize| texel(0, dy, channel) + (texel(1, dy, channel) - texel(0, dy, channel)) * x.fract();
+            row(0) + (row(1) - row(0)) * y.fract()
+        }))
+    }
+}
+
+/// The way of the wind in a time.
+#[allow(clippy::cast_possible_truncation, reason = "metres between two frames")]
+fn wind_in(scene: &Scene, seconds: f64) -> Vec3 {
+    let away = direction(0.0, scene.wind.from_deg + 180.0);
+    away * (f64::from(scene.wind.speed_mps) * seconds) as f32
+}
+
+/// Differences of clouds between a picture and the one before, followed by their distances and the wind.
+fn warp(now: View<'_>, distances: &[f32], before: View<'_>, wind: Vec3) -> Trail {
+    let directions = directions(now.camera, now.size);
+    let differences =
+        directions.zip(distances).zip(now.picture.chunks_exact(4)).filter_map(|((dir, distance), pixel)| {
+            if *distance <= 0.0 {
+                return None;
+            }
+            let was = before.colour_at(now.eye() + dir * *distance - wind)?;
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "levels of a display")]
+            let level = |channel: usize| (f32::from(pixel[channel]) - was[channel]).abs().round() as u8;
+            (0..3).map(level).max()
+        });
+    Trail::of(differences.collect())
 }
 
 /// The budget: what each pass takes of a frame on average, the rest of the program's own time last.
 pub fn table(case: &Case, flight: &Flight, source: TimingSource) -> Table {
     let title = format!(
         "Flight through {} at {}: {:.1} frames per second over {} frames ({}, frames by wall clock); trail behind the \
-         moving camera: mean {:.2}, 95 % below {}, 99 % below {} of 255 levels",
+         moving camera: mean {:.2}, 95 % below {}, 99 % below {} of 255 levels; clouds from one frame to the next, followed: \
+         mean {:.2}, 95 % below {}, 99 % below {}",
         case.name,
         case.size_text(),
         flight.frames_per_sec,
@@ -125,7 +211,10 @@ pub fn table(case: &Case, flight: &Flight, source: TimingSource) -> Table {
         source.label(),
         flight.trail.mean,
         flight.trail.p95,
-        flight.trail.p99
+        flight.trail.p99,
+        flight.warp.mean,
+        flight.warp.p95,
+        flight.warp.p99
     );
     let mut table = Table::new(title, &["pass", "runs", "median", "p5", "p95", "mean per frame", "share %"]);
     let count = f64::from(flight.frames.max(1));
@@ -165,6 +254,34 @@ mod tests {
         moved[1] = 40;
         let trail = Trail::between(&moved, &still);
         assert!((trail.mean - 0.2).abs() < 1e-9 && trail.p95 == 0, "one pixel of a hundred, by 20 levels: {trail:?}");
+    }
+
+    #[test]
+    fn clouds_are_followed_to_where_they_were() {
+        // A picture whose levels rise to the right, seen by a lens of 90 degrees.
+        let camera = Camera { pitch_deg: 0.0, field_of_view_deg: 90.0, ..Camera::default() };
+        let size = [40, 40];
+        let ramp = |shift: f32| -> Vec<u8> {
+            (0..1600).flat_map(|at| [byte(100.0 + 2.0 * ((at % 40) as f32 + shift)), 0, 0, 255]).collect()
+        };
+        let (seen, was) = (ramp(0.0), ramp(-3.0));
+        let distances = vec![2000.0; 1600];
+        let view = |picture| View { camera: &camera, picture, size };
+        let still = warp(view(&seen), &distances, view(&seen), Vec3::ZERO);
+        assert!(still.mean < 0.1, "{still:?}");
+        // A pixel is a twentieth of the distance wide; what was three pixels further left has the same level.
+        let depth = 2000.0 * 0.9;
+        let moved = warp(view(&seen), &distances, view(&was), Vec3::X * (depth * 3.0 / 20.0));
+        let unmoved = warp(view(&seen), &distances, view(&was), Vec3::ZERO);
+        assert!((unmoved.mean - 6.0).abs() < 0.1, "three pixels are six levels: {unmoved:?}");
+        assert!(moved.mean > 6.0, "it was followed the other way: {moved:?}");
+        let back = warp(view(&seen), &distances, view(&was), Vec3::X * (-depth * 3.0 / 20.0));
+        assert!(back.mean < 1.5, "{back:?}");
+    }
+
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "levels of a display")]
+    fn byte(level: f32) -> u8 {
+        level.round() as u8
     }
 
     #[test]

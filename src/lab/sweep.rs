@@ -36,6 +36,8 @@ pub struct Plan {
     pub goals: Vec<Goal>,
     /// Timed rounds over all settings.
     pub rounds: u32,
+    /// Jitters of the march that each setting is compared with; 1 for the usual one alone.
+    pub seeds: u32,
 }
 
 /// A sweep under way or finished.
@@ -87,11 +89,11 @@ impl Sweep {
     /// # Errors
     /// [`AccuracyError`] if a frame cannot be rendered or compared.
     pub fn advance(&mut self, renderer: &mut Renderer) -> Result<bool, AccuracyError> {
-        let Plan { scene, size, settings, .. } = &self.plan;
+        let Plan { scene, size, settings, seeds, .. } = &self.plan;
         match self.at() {
             At::Truth(goal, _) => self.find(renderer, goal)?,
             At::Comparing(index) => {
-                self.rows.push(compared(renderer, scene, &settings[index], (&self.truths, *size))?);
+                self.rows.push(compared(renderer, scene, &settings[index], (&self.truths, *size, *seeds))?);
             }
             At::Timing(taken, _) => {
                 let row = &mut self.rows[taken % settings.len()];

@@ -4,6 +4,8 @@
 //! they walk through them. With single scattering of the key light alone both have to see the same picture: the converged
 //! march up to its last halving of steps, paths up to their noise.
 
+mod slabs;
+
 use glam::UVec3;
 
 use super::accuracy::{AccuracyError, TruthImage, truth};
@@ -13,6 +15,8 @@ use crate::render::truth::{Convergence, Goal};
 use crate::render::{RenderError, Renderer};
 use crate::scene::param::Choice as _;
 use crate::scene::{Frame, Output, Quality, Scene};
+
+pub use slabs::analytic;
 
 /// Where the converged march stops.
 const TOLERANCE: f32 = 0.003;

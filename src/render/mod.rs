@@ -133,6 +133,8 @@ pub struct Renderer {
     shown: Option<Texture>,
     /// Which display target the next picture goes to.
     display_side: usize,
+    /// Shift of the march's jitter, in turns of the golden ratio.
+    jitter_seed: u32,
     candela_per_unit: f32,
     /// Interactive work: jobs to do, the slice under way, and the frame they belong to.
     queue: VecDeque<Job>,
@@ -162,6 +164,7 @@ impl Renderer {
             history: None,
             shown: None,
             display_side: 0,
+            jitter_seed: 0,
             candela_per_unit: 1.0,
             queue: VecDeque::new(),
             bake_jobs: 0,
@@ -218,6 +221,11 @@ impl Renderer {
             source: TimingSource::SerialisedHost,
             total_ms: pending.started.elapsed().as_secs_f64() * 1e3,
         })
+    }
+
+    /// Gives the frames from now on another jitter of the march, to tell its noise from its bias; 0 is the usual one.
+    pub fn set_jitter_seed(&mut self, seed: u32) {
+        self.jitter_seed = seed;
     }
 
     /// Forgets the picture before, as after a cut.

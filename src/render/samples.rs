@@ -13,6 +13,11 @@ use crate::gpu::Gpu;
 /// How far each sample shifts the jitter of the march: the golden ratio spreads any number of them evenly.
 const JITTER_SHIFT: f32 = 0.618_034;
 
+/// The shift of a sample or a seed.
+pub(super) fn jitter_shift(index: u32) -> f32 {
+    (index as f32 * JITTER_SHIFT).fract()
+}
+
 /// Where a picture's samples have got to.
 #[derive(Debug)]
 pub(super) struct PixelSamples {
@@ -53,7 +58,7 @@ impl PixelSamples {
     fn write(&self, gpu: &Gpu) {
         let mut view = self.view;
         view.pixel_point = point(self.current, self.count);
-        view.jitter.y = (self.view.jitter.y + self.current as f32 * JITTER_SHIFT).fract();
+        view.jitter.y = (self.view.jitter.y + jitter_shift(self.current)).fract();
         view.sample_share = 1.0 / (self.current + 1) as f32;
         view.sample_angle = self.view.pixel_angle / (self.count as f32).sqrt();
         gpu.queue.write_buffer(&self.buffer, 0, bytemuck::bytes_of(&view));

@@ -6,6 +6,7 @@ use glam::{UVec2, Vec2, Vec3};
 
 use super::context::{Bound, Context};
 use super::passes::{FrameBuffers, Passes};
+use super::samples::jitter_shift;
 use super::targets::{Targets, ray_count};
 use super::uniforms::other::PlainUniforms;
 use super::uniforms::scene::ViewUniforms;
@@ -43,7 +44,8 @@ impl Renderer {
         let key = HistoryKey::new(frame);
         let usable = self.history.take().filter(|history| !is_new && is_continued(history, &key, frame, &eye));
         let phase = next_phase(usable.as_ref());
-        let view = view_uniforms(frame, &plan, &eye, usable.as_ref(), &lighting);
+        let mut view = view_uniforms(frame, &plan, &eye, usable.as_ref(), &lighting);
+        view.jitter.y = jitter_shift(self.jitter_seed);
         let buffers = frame_buffers(&context, frame, &plan, &view);
         let shared = self.shared_resources();
         let display = &targets.display[self.display_side];

@@ -18,7 +18,7 @@ fn small_sweep(rounds: u32) -> Sweep {
     let settings = settings(&quick(), &[axis]).expect("settings");
     let mut scene = Scene::default();
     scene.camera.pitch_deg = 25.0;
-    Sweep::new(Plan { scene, size: [24, 14], settings, goals, rounds })
+    Sweep::new(Plan { scene, size: [24, 14], settings, goals, rounds, seeds: 2 })
 }
 
 #[test]
@@ -51,6 +51,8 @@ fn a_sweep_finds_truths_then_errors_then_times_a_step_at_a_time() {
     assert_eq!(sweep.title("Sky"), "Sky, 24×14, 2 rounds");
     assert_eq!(sweep.rows().len(), 3, "the setting in use, and two others");
     let error = |row: usize| sweep.rows()[row].error(Integrator::Converged).expect("measured").value;
+    let split = sweep.rows()[0].against[0].split.expect("two seeds");
+    assert!(split.variance.value > 0.0 && split.seeds == 2, "jitter is noise: {split:?}");
     assert!(error(1) > error(2), "one light step is worse than eight: {} {}", error(1), error(2));
     assert!(sweep.advance(&mut renderer).expect("nothing happens"), "the end is the end");
 }

@@ -161,7 +161,7 @@ fn measure(job: Job, control: &Control, tell: &dyn Fn(LabView)) -> anyhow::Resul
     let folder = tempfile::tempdir()?;
     let mut running = match order {
         Order::Sweep { settings, goals, size, rounds } => {
-            Running::Sweep(Box::new(Sweep::new(Plan { scene, size, settings, goals, rounds })))
+            Running::Sweep(Box::new(Sweep::new(Plan { scene, size, settings, goals, rounds, seeds: 1 })))
         }
         Order::Suite(kind, rounds) => Running::Suite(Suite::new(kind, rounds, &write_textures(folder.path())?)),
     };

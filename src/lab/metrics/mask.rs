@@ -52,7 +52,7 @@ fn pixel_rad(camera: &Camera, size: [u32; 2]) -> f32 {
 }
 
 /// Unit vectors through the middles of the pixels, row by row; what `ray_through` is in the shaders.
-fn directions(camera: &Camera, [width, height]: [u32; 2]) -> impl Iterator<Item = Vec3> {
+pub(in crate::lab) fn directions(camera: &Camera, [width, height]: [u32; 2]) -> impl Iterator<Item = Vec3> {
     let [forward, right, up] = camera.axes();
     let [across, high] = camera.half_tangents([width, height.max(1)]);
     let (right_edge, up_edge) = (right * across, up * high);
