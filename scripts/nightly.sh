@@ -7,3 +7,5 @@ set -euo pipefail
 cargo build --locked --bin nephoscope
 "$program" verify --full
 "$program" accuracy all --size 96x54 --rounds 5 --tolerance 0.01 --md
+# Cameras and suns that nobody tuned.
+"$program" accuracy fair_weather --views 20 --size 96x54 --rounds 1 --tolerance 0.01 --seeds 4 --md

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use clap::{Args, ValueEnum};
+use serde_json::{Map, Value, json};
 
 use super::interrupt::{self, Interrupted};
-use super::json::Json;
 use super::{Device, Edits, args, print};
 use crate::app::lab::write_textures;
 use crate::export::ExportError;
@@ -216,8 +216,8 @@ pub(super) fn print_machine(form: Form, gpu: &Gpu) -> Result<()> {
     ];
     let shown = lines.iter().filter(|(_, value)| !value.is_empty());
     if form.json {
-        let fields = shown.map(|(name, value)| ((*name).to_owned(), Json::text(value))).collect();
-        return print(&format!("{}\n", Json::Object(fields)));
+        let fields: Map<String, Value> = shown.map(|(name, value)| ((*name).to_owned(), json!(value))).collect();
+        return print(&format!("{}\n", Value::Object(fields)));
     }
     let mut text = String::new();
     for (name, value) in shown {
@@ -237,13 +237,13 @@ pub(super) fn print_table(form: Form, table: &Table) -> Result<()> {
     print(&format!("{text}\n"))
 }
 
-fn as_json(table: &Table) -> Json {
+fn as_json(table: &Table) -> Value {
     let cell = |cell: &Cell| match cell {
-        Cell::Text(text) => Json::text(text),
-        Cell::Number(number, _) => Json::from(*number),
+        Cell::Text(text) => json!(text),
+        Cell::Number(number, _) => json!(number),
     };
     let row = |row: &Vec<Cell>| {
-        Json::Object(table.columns.iter().map(|name| (*name).to_owned()).zip(row.iter().map(cell)).collect())
+        Value::Object(table.columns.iter().map(|name| (*name).to_owned()).zip(row.iter().map(cell)).collect())
     };
-    Json::object([("title", Json::text(&table.title)), ("rows", Json::List(table.rows.iter().map(row).collect()))])
+    json!({ "title": table.title, "rows": table.rows.iter().map(row).collect::<Vec<_>>() })
 }

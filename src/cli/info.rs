@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use clap::Args;
+use serde_json::{Value, json};
 
-use super::json::Json;
 use super::{Device, print};
 use crate::gpu::{AdapterChoice, Gpu, TimingSource};
 use crate::scene::{PRESET_VERSION, reference_docs};
@@ -63,22 +63,22 @@ fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
 }
 
-fn as_json(gpu: Option<&Gpu>) -> Json {
-    let adapters = Gpu::adapters().into_iter().map(|adapter| {
-        Json::object([
-            ("name", Json::text(adapter.name)),
-            ("kind", Json::text(format!("{:?}", adapter.device_type))),
-            ("backend", Json::text(format!("{:?}", adapter.backend))),
-            ("driver", Json::text(format!("{} {}", adapter.driver, adapter.driver_info).trim())),
-        ])
-    });
-    Json::object([
-        ("version", Json::text(env!("CARGO_PKG_VERSION"))),
-        ("preset_version", Json::Number(f64::from(PRESET_VERSION))),
-        ("system", Json::text(system())),
-        ("processors", Json::Number(processors() as f64)),
-        ("in_use", gpu.map_or(Json::Null, |gpu| Json::text(gpu.description()))),
-        ("timing", gpu.map_or(Json::Null, |gpu| Json::text(TimingSource::of(gpu).label()))),
-        ("adapters", Json::List(adapters.collect())),
-    ])
+fn as_json(gpu: Option<&Gpu>) -> Value {
+    let adapter = |adapter: wgpu::AdapterInfo| {
+        json!({
+            "name": adapter.name,
+            "kind": format!("{:?}", adapter.device_type),
+            "backend": format!("{:?}", adapter.backend),
+            "driver": format!("{} {}", adapter.driver, adapter.driver_info).trim(),
+        })
+    };
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "preset_version": PRESET_VERSION,
+        "system": system(),
+        "processors": processors(),
+        "in_use": gpu.map(Gpu::description),
+        "timing": gpu.map(|gpu| TimingSource::of(gpu).label()),
+        "adapters": Gpu::adapters().into_iter().map(adapter).collect::<Vec<_>>(),
+    })
 }

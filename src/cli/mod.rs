@@ -12,7 +12,6 @@ mod grid;
 mod info;
 mod integrate;
 mod interrupt;
-mod json;
 mod presets;
 mod render;
 mod verify;

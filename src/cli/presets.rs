@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::Subcommand;
+use serde_json::json;
 
-use super::json::Json;
 use super::print;
 use crate::files::{self, FileError};
 use crate::scene::builtin::BUILTINS;
@@ -44,13 +44,12 @@ fn list(json: bool) -> Result<()> {
     for builtin in BUILTINS {
         let preset = builtin.preset()?;
         if json {
-            let tags = preset.tags.iter().map(Json::text).collect();
-            let line = Json::object([
-                ("name", Json::text(builtin.name)),
-                ("title", Json::text(preset.name)),
-                ("description", Json::text(preset.description)),
-                ("tags", Json::List(tags)),
-            ]);
+            let line = json!({
+                "name": builtin.name,
+                "title": preset.name,
+                "description": preset.description,
+                "tags": preset.tags,
+            });
             print(&format!("{line}\n"))?;
         } else {
             print(&format!("{:width$}  {}: {}\n", builtin.name, preset.name, preset.description))?;

@@ -7,11 +7,11 @@ use std::time::Instant;
 use anyhow::{Context as _, Result};
 use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::json;
 
 use super::error::Usage;
 use super::integrate::{Integration, converge, describe};
 use super::interrupt::{self, Interrupted};
-use super::json::Json;
 use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
@@ -313,13 +313,13 @@ fn progress(count: usize) -> ProgressBar {
 fn report(args: &RenderArgs, path: &Path, time_secs: f64, seconds: f64) -> Result<()> {
     let [width, height] = args.size;
     if args.json {
-        let line = Json::object([
-            ("path", Json::text(path.display().to_string())),
-            ("width", Json::Number(f64::from(width))),
-            ("height", Json::Number(f64::from(height))),
-            ("time_secs", Json::Number(time_secs)),
-            ("seconds", Json::Number(seconds)),
-        ]);
+        let line = json!({
+            "path": path.display().to_string(),
+            "width": width,
+            "height": height,
+            "time_secs": time_secs,
+            "seconds": seconds,
+        });
         return print(&format!("{line}\n"));
     }
     print(&format!("{} {width}x{height}, {seconds:.1} s\n", path.display()))

@@ -17,8 +17,21 @@ pub(super) struct VerifyArgs {
     /// Check all built-in skies, larger, with more paths and from more places. Takes many minutes on a processor.
     #[arg(long)]
     full: bool,
+    /// Print JSON, one check a line.
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     device: Device,
+}
+
+impl VerifyArgs {
+    fn tell(&self, check: &Check) -> Result<()> {
+        if self.json {
+            let line = serde_json::json!({ "name": check.name, "holds": check.holds, "figure": check.figure });
+            return print(&format!("{line}\n"));
+        }
+        print(&format!("{}\n", check.line()))
+    }
 }
 
 /// Some promise does not hold.
@@ -39,25 +52,23 @@ pub(super) fn run(args: &VerifyArgs) -> Result<()> {
     };
     let skies = names.iter().map(|name| files::open(name)).collect::<Result<Vec<_>, _>>()?;
     let gpu = Gpu::headless(&args.device.choice())?;
-    print(&format!("{}\n", gpu.description()))?;
+    if !args.json {
+        print(&format!("{}\n", gpu.description()))?;
+    }
     let mut renderer = Renderer::new(&gpu)?;
     let (size, paths, views) = if args.full { ([64, 36], 128, 20) } else { ([32, 18], 64, 4) };
     let mut all: Vec<Check> = analytic(&mut renderer, args.full)?;
-    for check in &all {
-        print(&format!("{}\n", check.line()))?;
-    }
+    all.iter().try_for_each(|check| args.tell(check))?;
     for sky in &skies {
         let named = (sky.preset.name.as_str(), &sky.preset.scene);
         let mut checks = single_scattering_agrees(&mut renderer, named, (size, paths), &mut |_| {})?;
         checks.push(stays_finite(&mut renderer, named, (size, views))?);
-        for check in &checks {
-            print(&format!("{}\n", check.line()))?;
-        }
+        checks.iter().try_for_each(|check| args.tell(check))?;
         all.append(&mut checks);
     }
     let failed = all.iter().filter(|check| !check.holds).count();
     if failed > 0 {
         return Err(Failed { failed, count: all.len(), adapter: gpu.description() }.into());
     }
-    print(&format!("all {} checks hold\n", all.len()))
+    if args.json { Ok(()) } else { print(&format!("all {} checks hold\n", all.len())) }
 }
