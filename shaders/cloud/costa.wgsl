@@ -19,9 +19,12 @@ fn costa_shaped(density: f32, noise: vec4f, layer: LayerUniforms) -> f32 {
   return density * mix(1.0, shape, min(layer.shape_strength, 1.0)) * max(layer.shape_strength, 1.0);
 }
 
+// Mean of the small noise, which stands for it where it is not read, and to which it fades with distance.
+const COSTA_MEAN_DETAIL: f32 = 0.5;
+
 // Equation 3.3, where the percentage is that of the erosion.
 fn costa_eroded(density: f32, noise: vec4f, layer: LayerUniforms, fade: f32) -> f32 {
-  return density - dot(noise.arg, COSTA_WEIGHTS) * layer.detail_strength * (1.0 - fade);
+  return density - mix(dot(noise.arg, COSTA_WEIGHTS), COSTA_MEAN_DETAIL, fade) * layer.detail_strength;
 }
 
 fn costa_density(density: f32, layer: LayerUniforms) -> f32 {

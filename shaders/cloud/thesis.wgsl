@@ -33,10 +33,14 @@ fn thesis_field(profile: vec3f, noise: vec4f, weather: Weather, layer: LayerUnif
   return max(fields.x, max(fields.y, fields.z));
 }
 
+// Mean of the detail, which stands for it where it is not read, and to which it fades with distance: clouds without any
+// would be denser.
+const MEAN_DETAIL: f32 = 0.5;
+
 // Detail is subtracted, which adds wisps, and matters only near the surface (section 3.1.1).
 fn thesis_eroded(field: f32, noise: vec4f, layer: LayerUniforms, fade: f32) -> f32 {
-  let detail = dot(noise.rgb, vec3f(0.5, 0.3, 0.2));
-  return field - (1.0 - detail) * 0.35 * layer.detail_strength * (1.0 - fade);
+  let detail = mix(dot(noise.rgb, vec3f(0.5, 0.3, 0.2)), MEAN_DETAIL, fade);
+  return field - (1.0 - detail) * 0.35 * layer.detail_strength;
 }
 
 fn thesis_near_surface(field: f32, layer: LayerUniforms) -> bool {

@@ -242,8 +242,12 @@ fn thesis_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
   var field = thesis_field(profile, textureSampleLevel(worley_noise, linear_repeat, tile, reading.level), weather, layer);
 #if DETAIL
-  if (field > 0.0 && thesis_near_surface(field, layer) && layer.detail_strength > 0.0 && reading.detail) {
-    field = thesis_eroded(field, detail_texel(layer, p, h, reading), layer, reading.fade);
+  if (field > 0.0 && thesis_near_surface(field, layer) && layer.detail_strength > 0.0) {
+    var noise = vec4f(MEAN_DETAIL);
+    if (reading.detail) {
+      noise = detail_texel(layer, p, h, reading);
+    }
+    field = thesis_eroded(field, noise, layer, reading.fade);
   }
 #endif
   return thesis_density(field, layer);
@@ -267,8 +271,12 @@ fn texture_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
   density = costa_shaped(density, textureSampleLevel(shape_noise, linear_repeat, tile, reading.level), layer);
 #if DETAIL
-  if (density > 0.0 && layer.detail_strength > 0.0 && reading.detail) {
-    density = costa_eroded(density, detail_texel(layer, p, h, reading), layer, reading.fade);
+  if (density > 0.0 && layer.detail_strength > 0.0) {
+    var noise = vec4f(COSTA_MEAN_DETAIL);
+    if (reading.detail) {
+      noise = detail_texel(layer, p, h, reading);
+    }
+    density = costa_eroded(density, noise, layer, reading.fade);
   }
 #endif
   return costa_density(density, layer);

@@ -138,8 +138,8 @@ pub fn thesis_field(profile: Vec3, noise: Vec4, weather: &Weather, layer: &Layer
 /// The thesis's detail, subtracted.
 #[must_use]
 pub fn thesis_eroded(field: f32, noise: Vec4, layer: &LayerUniforms, fade: f32) -> f32 {
-    let detail = noise.xyz().dot(Vec3::new(0.5, 0.3, 0.2));
-    field - (1.0 - detail) * 0.35 * layer.detail_strength * (1.0 - fade)
+    let detail = mix(noise.xyz().dot(Vec3::new(0.5, 0.3, 0.2)), 0.5, fade);
+    field - (1.0 - detail) * 0.35 * layer.detail_strength
 }
 
 /// Density of the thesis's model, 0 to 1.
@@ -195,7 +195,7 @@ pub fn costa(coverage: f32, texel: Vec4, noises: [Vec4; 2], layer: &LayerUniform
     let [large, small] = noises;
     let shape = octaves(large.y, large.z, large.w) * large.x;
     let shaped = coverage * signal * mix(1.0, shape, layer.shape_strength.min(1.0)) * layer.shape_strength.max(1.0);
-    let eroded = shaped - octaves(small.w, small.x, small.y) * layer.detail_strength * (1.0 - fade);
+    let eroded = shaped - mix(octaves(small.w, small.x, small.y), 0.5, fade) * layer.detail_strength;
     [shaped, (eroded * layer.sharpness).clamp(0.0, 1.0)]
 }
 

@@ -147,6 +147,19 @@ fn front(scene: &Scene, eye: &Eye, time_secs: f64) -> Vec4 {
     Vec4::new(upwind.x as f32, upwind.y as f32, 1.0 / scene.weather.front_width_m, distance as f32)
 }
 
+/// Way through the clouds, in metres, up to which the steps towards the light are as many as the quality says.
+const USUAL_WAY_M: f32 = 3000.0;
+/// How many times as many there are for the longest ways.
+const MOST_LIGHT_STEPS: f32 = 2.5;
+
+/// Steps towards the light: more where layers are thick or the light is low. A way four times as long has twice as many.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
+fn light_steps(usual: u32, thickness_m: f32, light_sine: f32) -> u32 {
+    let way_m = thickness_m / light_sine.abs().max(0.02);
+    let more = (way_m / USUAL_WAY_M).sqrt().clamp(1.0, MOST_LIGHT_STEPS);
+    ((usual as f32 * more).round() as u32).clamp(1, 128)
+}
+
 /// Radiance of the sky where the light is plain.
 pub(crate) fn plain_sky(scene: &Scene) -> Option<Vec3> {
     let light = &scene.plain_light;
@@ -217,7 +230,7 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         step_m: quality.step_m,
         step_growth: quality.step_growth,
         empty_stride: quality.empty_stride,
-        light_steps: quality.light_steps,
+        light_steps: light_steps(quality.light_steps, highest_m - lowest_m, lighting.towards_key.y),
         light_spread_per_m: quality.light_spread_per_m(),
         light_reach_m: quality.light_reach_m,
         light_detail_steps: quality.light_detail_steps,
@@ -253,6 +266,14 @@ mod tests {
     fn body_at(model: DensityModel, coverage: f32, field: f32) -> f32 {
         let (scale, bias) = body(&CloudLayer { model, edge_softness: 0.25, ..CloudLayer::default() }, coverage);
         (field * scale + bias).clamp(0.0, 1.0)
+    }
+
+    #[test]
+    fn long_ways_towards_the_light_have_more_steps() {
+        assert_eq!(light_steps(10, 1500.0, 0.7), 10, "a high sun over cumulus");
+        assert_eq!(light_steps(10, 6000.0, 0.5), 20, "four times the usual way");
+        assert_eq!((light_steps(10, 1500.0, 0.0), light_steps(10, 1500.0, -0.05)), (25, 25), "the horizon");
+        assert_eq!((light_steps(1, 0.0, 1.0), light_steps(128, 9000.0, 0.1)), (1, 128), "at the ends");
     }
 
     #[test]
