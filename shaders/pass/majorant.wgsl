@@ -19,26 +19,44 @@ struct Majorant {
 const PAST_WALL: f32 = 0.1;
 
 fn voxel_majorant(p: vec3f, altitude: f32, dir: vec3f) -> Majorant {
-  let extent = scene.box_max - scene.box_min;
-  let voxel = extent / vec3f(textureDimensions(voxels));
+  var low = scene.box_min;
+  var high = scene.box_max;
+#if BAKED
+#else
+  // A file fills its own layer, which may be thinner than all layers together.
+  var of_file = scene.layers[0];
+  for (var i = 1u; i < LAYERS; i++) {
+    if (of_file.model != MODEL_GRID) {
+      of_file = scene.layers[i];
+    }
+  }
+  low.y = of_file.base_m;
+  high.y = of_file.base_m + 1.0 / of_file.per_thickness;
+#endif
+  let at = vec3f(p.x, altitude, p.z);
+  let inside = box_segments(at, dir, low, high).first;
+  let voxel = (high - low) / vec3f(textureDimensions(voxels));
+  let past = PAST_WALL * min(voxel.x, min(voxel.y, voxel.z));
+  // Outside there is nothing up to where the ray enters, if it ever does.
+  if (inside.y <= inside.x) {
+    return Majorant(0.0, FAR_M);
+  }
+  if (inside.x > past) {
+    return Majorant(0.0, inside.x - 0.5 * past);
+  }
   let cell = voxel * f32(VOXELS_PER_CELL);
-  let at = vec3f(p.x, altitude, p.z) - scene.box_min;
-  let index = clamp(floor(at / cell), vec3f(0.0), vec3f(textureDimensions(voxel_bound)) - 1.0);
+  let index = clamp(floor((at - low) / cell), vec3f(0.0), vec3f(textureDimensions(voxel_bound)) - 1.0);
   // How far along the ray each wall is that it goes towards.
   let wall = select(index, index + 1.0, dir >= vec3f(0.0)) * cell;
-  let ways = (wall - at) / without_zeros(dir);
-  let past = PAST_WALL * min(voxel.x, min(voxel.y, voxel.z));
+  let ways = (wall - (at - low)) / without_zeros(dir);
   let greatest = textureLoad(voxel_bound, vec3i(index), 0);
-  var extinction = 0.0;
 #if BAKED
+  var extinction = 0.0;
   for (var i = 0u; i < LAYERS; i++) {
     extinction += greatest[i] * scene.layers[i].extinction_per_m;
   }
 #else
-  for (var i = 0u; i < LAYERS; i++) {
-    let layer = scene.layers[i];
-    extinction += select(0.0, greatest.x * layer.density_scale * layer.extinction_per_m, layer.model == MODEL_GRID);
-  }
+  let extinction = greatest.x * of_file.density_scale * of_file.extinction_per_m;
 #endif
   return Majorant(extinction, max(min(ways.x, min(ways.y, ways.z)), 0.0) + past);
 }

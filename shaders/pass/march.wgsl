@@ -145,8 +145,8 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       let far = select(step, step * stride, clear_samples > CLEAR_SAMPLES + 3u && clearness >= 1.0);
       let ordinary = select(far * max(clearness, NEAREST_STRIDE), clear_way, clear_way > step * stride && clear_way < FAR_M);
       advanced = select(surface_step, ordinary, clear_samples > CLEAR_SAMPLES);
-      // On average cloud begins half way to the next sample.
-      behind = 0.5 * advanced;
+      // On average cloud begins half way to the next sample; but not within what the map promises to be clear.
+      behind = select(0.5 * advanced, 0.0, advanced == clear_way);
       t += advanced;
     } else if (advanced > 1.5 * surface_step && extinction * step > 0.5 * scene.step_depth) {
       // Entered a dense cloud from clear air: go back to look for its surface.

@@ -112,7 +112,10 @@ impl Document {
     pub fn apply(&mut self, action: &Action) {
         let scene = &mut self.preset.scene;
         match action {
-            Action::EditScene { scene: edited, .. } => *scene = (**edited).clone(),
+            Action::EditScene { scene: edited, .. } => {
+                *scene = (**edited).clone();
+                scene.give_grids_a_box();
+            }
             Action::EditQuality { quality, .. } => self.quality = (**quality).clone(),
             Action::SetQualityLevel(level) => self.quality = Quality::level(*level),
             Action::MoveCamera(camera) => scene.camera = camera.clone(),

@@ -105,16 +105,18 @@ impl Viewport {
 
     /// Begins a frame if one is due, and sends the next slice of work.
     pub(super) fn step(&mut self, document: &Document, size: [u32; 2]) -> Result<Step, RenderError> {
-        let inputs = Inputs {
+        let own = Inputs {
             scene: document.preset().scene.clone(),
-            quality: match self.budget_ms {
-                Some(_) => self.governor.quality(document.quality()),
-                None => document.quality().clone(),
-            },
+            quality: document.quality().clone(),
             size,
             time_secs: document.time_secs(),
         };
-        self.has_moved_on |= self.truths.follow(&inputs, Instant::now());
+        // What is shown at rest and what is compared has the document's own quality.
+        self.has_moved_on |= self.truths.follow(&own, Instant::now());
+        let inputs = match self.budget_ms {
+            Some(_) => Inputs { quality: self.governor.quality(&own.quality), ..own },
+            None => own,
+        };
         if self.refused.as_ref() == Some(&inputs) {
             return Ok(Step::Idle);
         }

@@ -267,7 +267,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<()> {
         bar.inc(1);
         if interrupt::is_asked() {
             bar.finish_and_clear();
-            return Err(Interrupted(format!("{} holds what was finished", path.display())).into());
+            return Err(Interrupted(format!("{} is the last picture, with what was finished", path.display())).into());
         }
     }
     bar.finish_and_clear();
@@ -287,6 +287,10 @@ fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, t
         }
         Some(goal) => {
             let truth = converge(renderer, &frame, goal).with_context(failed)?;
+            if !truth.progress().is_done && job.pictures.len() > 1 {
+                // The next run would take it for a finished one.
+                return Err(Interrupted(format!("{} is not finished and was not written", path.display())).into());
+            }
             eprintln!("{}: {}", path.display(), describe(goal, &truth.progress()));
             let linear = (job.format == Format::Exr).then(|| truth.picture(renderer)).transpose()?;
             (truth.into_display(), linear)

@@ -387,7 +387,7 @@ fn describe(preset: &Preset, values: String, bounds: Bounds, [width, height]: [u
             origin: eye.into(),
             target: (eye + forward * 1000.0).into(),
             up: up.into(),
-            fov_x_deg: f64::from(2.0 * across.atan().to_degrees()),
+            fov_x_deg: f64::from(2.0 * across.atan().to_degrees()).min(150.0),
         }),
     }
 }

@@ -65,9 +65,9 @@ pub enum FileError {
         /// Names close to it, as a phrase; may be empty.
         hint: String,
     },
-    /// A weather map of a picture's sky is neither inside nor beside it.
+    /// A weather map or voxel grid of a picture's sky is neither inside nor beside it.
     #[error(
-        "{path} names the weather map {name}, which is neither inside it nor beside it with the right contents; \
+        "{path} names the file {name}, which is neither inside it nor beside it with the right contents; \
          put {name} (SHA-256 {sha256}) into the same folder"
     )]
     MapMissing {

@@ -153,22 +153,13 @@ impl Measurement {
         let (case, row) = (&self.cases[index], &mut self.rows[index]);
         let counts = round >= self.rounds.warm_up;
         let mut time_secs = f64::from(round);
-        if row.is_slow() {
-            if row.total.len() < (SLOW_ROUNDS * self.rounds.frames) as usize {
-                for _ in 0..self.rounds.frames {
-                    row.add(&renderer.render(&case.frame(time_secs))?);
-                }
-            }
-        } else {
+        let is_enough = row.is_slow() && row.total.len() >= (SLOW_ROUNDS * self.rounds.frames) as usize;
+        if !is_enough {
             let first = renderer.render(&case.frame(time_secs))?;
             if counts {
                 add_passes(&mut row.on_change, &first);
-            } else {
-                row.warm_up_ms = first.total_ms;
             }
-            // Frames that take seconds are warm after one.
-            let others = if counts { self.rounds.frames } else { u32::from(!row.is_slow()) };
-            for _ in 0..others {
+            for _ in 0..if counts { self.rounds.frames } else { 1 } {
                 time_secs += 1.0 / 24.0;
                 let report = renderer.render(&case.frame(time_secs))?;
                 if counts {

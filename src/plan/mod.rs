@@ -107,6 +107,14 @@ impl FramePlan {
     }
 }
 
+impl FramePlan {
+    /// Whether a scene of the other plan holds everything that this one draws from.
+    pub fn fits(&self, other: &Self) -> bool {
+        let source = |plan: &Self| plan.march.map(|march| (march.grid, march.baked, march.layers));
+        self.plain == other.plain && source(self) == source(other)
+    }
+}
+
 fn plain(scene: &Scene, why: &mut Reasons) -> bool {
     let plain = scene.plain_light.enabled;
     why.either(!plain, "sky tables", "the light comes through air", "the light is plain: there is no air");

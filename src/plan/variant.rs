@@ -2,7 +2,7 @@
 
 use super::reasons::Reasons;
 use super::{KeyLight, Lighting};
-use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, MapEdge, Output, Scene};
+use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapSource, Output, Scene};
 
 /// Fewest voxels across a baked box; half as many upwards have to be more than one.
 const LEAST_VOXELS: u32 = 4;
@@ -82,6 +82,11 @@ impl MarchVariant {
             "air lies before the clouds",
             "it is switched off, or clouds stand alone, or there is none",
         );
+        if any(|layer| layer.model == DensityModel::Texture)
+            && scene.weather.layers.iter().all(|map| map.source == MapSource::Generated)
+        {
+            why.no("weather texture", "the map holds no heights; set its source to a weather texture or an image");
+        }
         let baked = baked(frame, why);
         let mapless = layers.iter().all(|layer| !layer.reads_map());
         let repeats = scene.weather.edge == MapEdge::Repeat;

@@ -41,7 +41,7 @@ impl Renderer {
         let mut plan = FramePlan::new(frame);
         if !self.is_ready(&plan)? {
             match self.last_plan.clone() {
-                Some(last) if last != plan && self.is_ready(&last)? => plan = last,
+                Some(last) if last != plan && last.fits(&plan) && self.is_ready(&last)? => plan = last,
                 _ => {
                     self.is_compiling = true;
                     return Ok(());

@@ -83,6 +83,8 @@ impl Renderer {
         let scene = frame.scene;
         let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms };
         let mut jobs = Vec::new();
+        // What can be refused comes first: the rest counts as made once it is scheduled.
+        self.voxels.read(&self.gpu, scene, plan)?;
         if !plan.plain {
             let sky = uniforms::sky_inputs(scene, &Lighting::new(scene));
             self.sky.update(&self.gpu, &self.programs, &sky, &mut jobs)?;

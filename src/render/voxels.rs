@@ -15,6 +15,22 @@ use crate::scene::{CloudLayer, DensityModel, Frame, Scene};
 /// Voxels along each edge of a cell whose greatest value is known; as `cloud/voxels.wgsl` has it.
 const PER_CELL: u32 = 8;
 
+/// A file as it was when it was read: another time or length makes it another.
+#[derive(Clone, Debug, PartialEq)]
+struct FileState {
+    path: PathBuf,
+    modified: Option<std::time::SystemTime>,
+    bytes: u64,
+}
+
+impl FileState {
+    fn of(path: &Path) -> Self {
+        let metadata = std::fs::metadata(path).ok();
+        let modified = metadata.as_ref().and_then(|metadata| metadata.modified().ok());
+        Self { path: path.to_owned(), modified, bytes: metadata.map_or(0, |metadata| metadata.len()) }
+    }
+}
+
 /// One grid on the device, and what it was made from.
 #[derive(Debug)]
 struct Made<K> {
@@ -30,19 +46,24 @@ struct BakedFrom {
     field: SceneUniforms,
     /// Which of the weather maps it was, by their count.
     map: u64,
-    file: Option<PathBuf>,
+    file: Option<FileState>,
     variant: MarchVariant,
 }
 
 /// The grids of a scene.
 #[derive(Debug, Default)]
 pub(super) struct Voxels {
-    file: Option<Made<PathBuf>>,
+    file: Option<Made<FileState>>,
     baked: Option<Made<BakedFrom>>,
 }
 
 impl Voxels {
-    /// Reads the file and bakes the layers that the plan calls for, as far as they are not there; lets go of the others.
+    /// Reads the file that the plan calls for, if it is not there; lets go of another.
+    pub(super) fn read(&mut self, gpu: &Gpu, scene: &Scene, plan: &FramePlan) -> Result<(), RenderError> {
+        self.update_file(gpu, scene, plan.march.is_some_and(|march| march.grid))
+    }
+
+    /// Bakes the layers that the plan calls for, as far as they are not there; lets go of the others.
     /// A bake reads `inputs`: noises and weather map, of which it is the one of this count.
     pub(super) fn update(
         &mut self,
@@ -52,10 +73,9 @@ impl Voxels {
         jobs: &mut Vec<Job>,
     ) -> Result<(), RenderError> {
         let Some(march) = plan.march else {
-            *self = Self::default();
+            self.baked = None;
             return Ok(());
         };
-        self.update_file(context, frame.scene, march)?;
         self.update_baked(context, (frame, march), (inputs, map), jobs)?;
         let tracked = march.baked.is_none();
         if let Some(file) = &mut self.file {
@@ -67,13 +87,14 @@ impl Voxels {
         Ok(())
     }
 
-    fn update_file(&mut self, context: &Context<'_>, scene: &Scene, march: MarchVariant) -> Result<(), RenderError> {
-        let Some((index, layer)) = file_layer(scene).filter(|_| march.grid) else {
+    fn update_file(&mut self, gpu: &Gpu, scene: &Scene, wanted: bool) -> Result<(), RenderError> {
+        let Some((index, layer)) = file_layer(scene).filter(|_| wanted) else {
             self.file = None;
             return Ok(());
         };
         let path = Path::new(&layer.grid.0);
-        if self.file.as_ref().is_some_and(|file| file.from == path) {
+        let state = FileState::of(path);
+        if self.file.as_ref().is_some_and(|file| file.from == state) {
             return Ok(());
         }
         // Two grids at once may be more than there is memory for.
@@ -83,8 +104,8 @@ impl Voxels {
             return Err(refused("no file is named; give the path of an .npy or a .vol".to_owned()));
         }
         let (grid, _) = VoxelGrid::read(path).map_err(|error| refused(error.to_string()))?;
-        let values = upload(context.gpu, &grid);
-        self.file = Some(Made { from: path.to_owned(), values, bound: None });
+        let values = upload(gpu, &grid);
+        self.file = Some(Made { from: state, values, bound: None });
         Ok(())
     }
 

@@ -104,9 +104,16 @@ impl Scene {
     pub fn mend(&mut self) {
         self.layers.truncate(MAX_LAYERS);
         self.weather.layers.truncate(MAX_LAYERS);
-        let mut has_grid = false;
         for layer in &mut self.layers {
             layer.top_m = layer.top_m.max(layer.base_m);
+        }
+        self.give_grids_a_box();
+    }
+
+    /// Changes as little as makes the rules of voxel grids hold: a box, and no second one.
+    pub fn give_grids_a_box(&mut self) {
+        let mut has_grid = false;
+        for layer in &mut self.layers {
             if layer.model == DensityModel::Grid && std::mem::replace(&mut has_grid, true) {
                 layer.model = CloudLayer::default().model;
             }

@@ -150,6 +150,23 @@ impl Quality {
         }
     }
 
+    /// The same with the march of another: how its steps are taken. Size, order and share of pixels, samples, shadows and
+    /// voxels stay.
+    #[must_use]
+    pub fn with_march_of(&self, other: &Self) -> Self {
+        Self {
+            update: self.update,
+            update_order: self.update_order,
+            resolution_scale: self.resolution_scale,
+            pixel_samples: self.pixel_samples,
+            still_step: self.still_step,
+            shadow_map_px: self.shadow_map_px,
+            shaft_samples: self.shaft_samples,
+            grid_voxels: self.grid_voxels,
+            ..other.clone()
+        }
+    }
+
     /// The same for a picture that takes its time: all pixels, and shorter steps.
     #[must_use]
     pub fn of_still(&self) -> Self {

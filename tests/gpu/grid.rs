@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use nephoscope::files;
 use nephoscope::images::voxels::VoxelGrid;
 use nephoscope::render::truth::{Goal, TruthCounts, TruthPicture};
-use nephoscope::scene::{DomainKind, Frame, Output, Quality, Scene};
+use nephoscope::scene::{CloudLayer, DensityModel, DomainKind, Frame, Output, Quality, Scene};
 
 use crate::common::Random;
 use crate::common::sky::{frame, quick, renderer};
@@ -275,4 +275,50 @@ fn a_tilted_picture_is_the_upright_one_turned() {
     assert!(lit > 0.05 && worst < 2e-3, "{worst} of {lit}");
     let straight: f32 = upright.iter().zip(&upside_down).map(|(a, b)| (a[3] - b[3]).abs()).fold(0.0, f32::max);
     assert!(straight > 0.05, "unturned they differ: {straight}");
+}
+
+#[test]
+fn a_grid_among_other_layers_stays_under_its_majorant() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let light = r#""sky_radiance": 1, "camera": {"origin": [0, 0, 2.5], "target": [0, 0, 0], "fov_x_deg": 30}"#;
+    // Cells of eight voxels, those of the upper third full.
+    let upper = grid([32, 32, 32], |at| if at[1] > 22 { 1.0 } else { 0.0 });
+    let mut scene = scene(folder.path(), &upper, &format!(r#"{CUBE}, "extinction_scale": 8, {light}"#));
+    // Haze from below the grid to above it.
+    let grid = scene.layers[0].clone();
+    scene.layers.push(CloudLayer {
+        model: DensityModel::Uniform,
+        base_m: grid.base_m - 400.0,
+        top_m: grid.top_m + 700.0,
+        scattering_per_m: 0.0005,
+        lean_m: 0.0,
+        ..CloudLayer::default()
+    });
+    scene.weather.coverage = 1.0;
+    for order in 0..2 {
+        let march = converged(&scene, 1e-3).clouds;
+        let paths = traced(&scene, 128, Some(1)).clouds;
+        let mean = |pixels: &[[f32; 4]]| pixels.iter().map(|pixel| pixel[3]).sum::<f32>() / pixels.len() as f32;
+        let (march, paths) = (mean(&march), mean(&paths));
+        assert!((march - paths).abs() < 0.01, "order {order}: {march} passes the march, {paths} the paths");
+        scene.layers.reverse();
+    }
+}
+
+#[test]
+fn a_file_that_has_changed_is_read_again() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let camera = r#""camera": {"origin": [0, 0, 2], "target": [0, 0, 0], "fov_x_deg": 20}"#;
+    let description = format!(r#"{CUBE}, "extinction_scale": 5, {camera}"#);
+    let at = |size: [u32; 3]| {
+        let half = grid(size, |at| if at[0] < size[0] / 2 { 1.0 } else { 0.0 });
+        let scene = scene(folder.path(), &half, &description);
+        let mut renderer = renderer();
+        let quality = quick();
+        renderer.render(&frame(&scene, &quality, SIZE, Output::Linear)).expect("it can be rendered");
+        renderer.clouds().expect("it can be read")
+    };
+    let (coarse, fine) = (at([2, 2, 2]), at([32, 2, 2]));
+    let differ = coarse.iter().zip(&fine).filter(|(a, b)| (a[3] - b[3]).abs() > 0.05).count();
+    assert!(differ > 20, "the edge is sharper: {differ} pixels differ");
 }

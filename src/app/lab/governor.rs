@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use crate::scene::Quality;
-use crate::ui::LabView;
+use crate::ui::{LabView, Phase};
 
 /// Frames that a decision rests on.
 const FRAMES: usize = 5;
@@ -23,16 +23,23 @@ pub(crate) struct Governor {
 }
 
 impl Governor {
-    /// Takes over the front of what was measured. The place on it stays as far as it can.
+    /// Takes over the front of what was measured, once that is at its end. The setting stays if it is still on the front.
     pub(crate) fn follow(&mut self, view: &LabView) {
-        let same = |(old, (new, _)): (&(String, Quality, f64), &(&crate::ui::Measured, f64))| old.1 == new.quality;
-        let front = view.front();
-        if front.len() == self.front.len() && self.front.iter().zip(&front).all(same) {
+        if !matches!(view.phase, Phase::Ended { .. }) {
             return;
         }
-        self.front =
-            front.into_iter().map(|(setting, cost)| (setting.name.clone(), setting.quality.clone(), cost)).collect();
-        self.at = self.front.len() / 2;
+        let front: Vec<(String, Quality, f64)> = view
+            .front()
+            .into_iter()
+            .map(|(setting, cost)| (setting.name.clone(), setting.quality.clone(), cost))
+            .collect();
+        if front.is_empty() || front == self.front {
+            return;
+        }
+        let own = self.front.get(self.at).map(|(_, quality, _)| quality);
+        let place = own.and_then(|own| front.iter().position(|(_, quality, _)| quality == own));
+        self.at = place.unwrap_or(front.len() / 2);
+        self.front = front;
         self.recent.clear();
     }
 
@@ -40,17 +47,7 @@ impl Governor {
     /// stay the user's.
     pub(crate) fn quality(&self, own: &Quality) -> Quality {
         let Some((_, governed, _)) = self.front.get(self.at) else { return own.clone() };
-        Quality {
-            update: own.update,
-            update_order: own.update_order,
-            resolution_scale: own.resolution_scale,
-            pixel_samples: own.pixel_samples,
-            still_step: own.still_step,
-            shadow_map_px: own.shadow_map_px,
-            shaft_samples: own.shaft_samples,
-            grid_voxels: own.grid_voxels,
-            ..governed.clone()
-        }
+        own.with_march_of(governed)
     }
 
     /// Takes in a finished frame; returns whether the setting changes.
@@ -113,6 +110,7 @@ mod tests {
                 setting(9, 90.0, false),
                 setting(4, 40.0, true),
             ],
+            phase: Phase::Ended { is_partial: false },
             ..LabView::default()
         };
         let mut governor = Governor::default();

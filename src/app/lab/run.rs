@@ -1,5 +1,6 @@
 //! Measuring on a thread of its own, with a renderer of its own: it can wait, go on, and be left.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -149,9 +150,13 @@ fn settings(sweep: &Sweep) -> Vec<Measured> {
 /// Measures until the end or until it is left; `tell` hears what the panel is to show.
 pub(super) fn run(job: Job, control: &Control, tell: &dyn Fn(LabView)) {
     let name = job.name.clone();
-    if let Err(error) = measure(job, control, tell) {
-        tell(LabView { name, phase: Phase::Failed(format!("{error:#}")), ..LabView::default() });
-    }
+    let measured = catch_unwind(AssertUnwindSafe(|| measure(job, control, tell)));
+    let why = match measured {
+        Ok(Ok(())) => return,
+        Ok(Err(error)) => format!("{error:#}"),
+        Err(_) => "measuring broke off by a fault of the program; the terminal says more".to_owned(),
+    };
+    tell(LabView { name, phase: Phase::Failed(why), ..LabView::default() });
 }
 
 fn measure(job: Job, control: &Control, tell: &dyn Fn(LabView)) -> anyhow::Result<()> {
@@ -178,9 +183,17 @@ fn measure(job: Job, control: &Control, tell: &dyn Fn(LabView)) -> anyhow::Resul
             tell(running.view(&name, Phase::Ended { is_partial: true }, source));
             return Ok(());
         }
-        if running.advance(&mut renderer)? {
-            tell(running.view(&name, Phase::Ended { is_partial: false }, source));
-            return Ok(());
+        match running.advance(&mut renderer) {
+            Ok(false) => {}
+            Ok(true) => {
+                tell(running.view(&name, Phase::Ended { is_partial: false }, source));
+                return Ok(());
+            }
+            Err(error) => {
+                // What was measured before stays.
+                tell(running.view(&name, Phase::Failed(format!("{error:#}")), source));
+                return Ok(());
+            }
         }
         if told.elapsed() > REPORT {
             tell(running.view(&name, Phase::Running, source));

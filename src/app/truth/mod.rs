@@ -179,9 +179,12 @@ impl Truths {
     /// Begins what a task needs; `false` while shaders are compiled for it.
     fn begin(&mut self, task: Task, renderer: &mut Renderer) -> Result<bool, RenderError> {
         let Some(inputs) = &self.inputs else { return Ok(false) };
+        // What is compared with reads the clouds themselves, not their voxels.
+        let grid_voxels = if matches!(task, Task::Truth(_)) { 0 } else { self.quality.grid_voxels };
+        let quality = Quality { grid_voxels, ..self.quality.clone() };
         let frame = Frame {
             scene: &inputs.scene,
-            quality: &self.quality,
+            quality: &quality,
             size: inputs.size,
             time_secs: inputs.time_secs,
             output: if task.is_measured() { Output::Linear } else { Output::Display },

@@ -33,7 +33,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut LabState, document: &Document, actio
         governor(ui, state);
     }
     if let Some(setting) = used.and_then(|index| state.view.settings.get(index)) {
-        let quality = Box::new(setting.quality.clone());
+        let quality = Box::new(document.quality().with_march_of(&setting.quality));
         if *document.quality() != *quality {
             actions.push(Action::EditQuality { key: "lab".to_owned(), quality });
         }
@@ -117,8 +117,8 @@ fn settings(ui: &mut Ui, view: &LabView) -> Option<usize> {
 fn governor(ui: &mut Ui, state: &mut LabState) {
     let is_possible = state.view.front().len() > 1;
     ui.horizontal_wrapped(|ui| {
-        let hint = "Moves along the measured front while the picture moves, so that a frame takes about so long. Motion \
-                    is never dropped, and at rest the picture refines as always.";
+        let hint = "Moves along the measured front, so that a frame takes about so long, in place of the march’s settings in \
+                    the quality panel. Motion is never dropped; at rest the picture refines by the panel’s settings.";
         let switch = ui.add_enabled(is_possible, egui::Checkbox::new(&mut state.governs, "Hold a frame at"));
         let switch = switch.on_hover_text(hint).on_disabled_hover_text("The front needs two settings at least");
         row::name(ui, &switch, "Governor", "lab.governor");
