@@ -281,9 +281,9 @@ fn a_tilted_picture_is_the_upright_one_turned() {
 fn a_grid_among_other_layers_stays_under_its_majorant() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let light = r#""sky_radiance": 1, "camera": {"origin": [0, 0, 2.5], "target": [0, 0, 0], "fov_x_deg": 30}"#;
-    // Cells of eight voxels, those of the upper third full.
-    let upper = grid([32, 32, 32], |at| if at[1] > 22 { 1.0 } else { 0.0 });
-    let mut scene = scene(folder.path(), &upper, &format!(r#"{CUBE}, "extinction_scale": 8, {light}"#));
+    // Full in the lowest of its cells alone, which are eight voxels high.
+    let lower = grid([32, 32, 32], |at| if at[1] < 6 { 1.0 } else { 0.0 });
+    let mut scene = scene(folder.path(), &lower, &format!(r#"{CUBE}, "extinction_scale": 8, {light}"#));
     // Haze from below the grid to above it.
     let grid = scene.layers[0].clone();
     scene.layers.push(CloudLayer {
