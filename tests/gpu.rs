@@ -4,6 +4,7 @@ mod common;
 
 mod gpu {
     mod absent;
+    mod clearance;
     mod density;
     mod frames;
     mod grid;

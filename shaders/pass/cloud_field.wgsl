@@ -1,4 +1,5 @@
 // The density field with its textures bound: the one place where clouds are read.
+#import "cloud/bound.wgsl"
 #import "cloud/costa.wgsl"
 #import "cloud/profile.wgsl"
 #import "cloud/thesis.wgsl"
@@ -45,7 +46,7 @@ override LAYERS: u32 = 1u;
 @group(1) @binding(6) var curl_noise: texture_2d<f32>;
 #endif
 #if SKIP
-@group(1) @binding(7) var weather_bound: texture_2d<f32>;
+@group(1) @binding(7) var clear_ways: texture_3d<f32>;
 #endif
 // Voxels in the box: of the one layer that is a file; or, baked, of all layers, a channel each.
 #if GRID
@@ -60,10 +61,13 @@ struct Reading {
   detail: bool,
   // How far the small noise has faded to its mean, 0..1.
   fade: f32,
+  // Whether clear_way is asked for.
+  ways: bool,
 }
 
 #if COUNT
 var<private> counted_reads: u32;
+var<private> counted_light_steps: u32;
 #endif
 
 // How near the last place read was to a surface, where it was clear: 1 far away, towards 0 near. The march shortens its
@@ -132,15 +136,17 @@ fn greatest_body(layer: LayerUniforms, field: f32) -> f32 {
 #endif
 }
 
-// Called where the map has no body: asks for how far.
-fn note_clear(layer: LayerUniforms, p: vec2f, h: f32) {
+// Called where the map says that a layer has no cloud: asks for how far.
+fn note_clear(index: u32, p: vec2f, h: f32, reading: Reading) {
   var way = 0.0;
 #if SKIP
-  count_read();
-  let uv = map_uv(layer, p, h);
-  let cells = vec2f(textureDimensions(weather_bound));
-  let bound = textureLoad(weather_bound, vec2u(min((uv - floor(uv)) * cells, cells - 1.0)), 0).x;
-  way = select(0.0, layer.lean.z, greatest_body(layer, bound) <= 0.0);
+  if (reading.ways) {
+    count_read();
+    let uv = map_uv(scene.layers[index], p, h);
+    let cells = vec3f(textureDimensions(clear_ways));
+    let cell = vec3u(min(vec3f(uv - floor(uv), h).xzy * cells, cells - 1.0));
+    way = textureLoad(clear_ways, cell, 0)[index];
+  }
 #endif
   clear_way = min(clear_way, way);
 }
@@ -191,23 +197,24 @@ fn detail_texel(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> vec
 #endif
 
 #if PROFILE
-fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
+fn profile_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let weather = weather_at(layer, p.xz, h);
   if (weather.body <= 0.0) {
-    note_clear(layer, p.xz, h);
+    note_clear(index, p.xz, h, reading);
+    return 0.0;
+  }
+  let profile = height_profile(weather, layer, h);
+  if (profile_bound(profile, layer) <= 0.0) {
+    note_clear(index, p.xz, h, reading);
     return 0.0;
   }
   clear_way = 0.0;
-  let profile = height_profile(weather, layer, h);
-  if (profile < 0.02) {
-    return 0.0;
-  }
   count_read();
   let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
   let noise = textureSampleLevel(shape_noise, linear_repeat, tile, reading.level);
   var field = billowed(profile, noise, weather, layer);
   if (field <= 0.0) {
-    clearness = min(clearness, -2.0 * field);
+    clearness = min(clearness, -4.0 * field);
     return 0.0;
   }
   let firm = firmness(profile, noise, weather, layer);
@@ -220,24 +227,25 @@ fn profile_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
 #endif
     field = eroded(field, amount, firm);
     // Air that erosion has cleared lies deep in the field: steps in it need not all be short.
-    clearness = min(clearness, max(-0.7 * field, 0.0));
+    clearness = min(clearness, max(-0.35 * field, 0.0));
   }
   return profile_density(field, firm, layer, h);
 }
 #endif
 
 #if THESIS
-fn thesis_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
+fn thesis_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let weather = weather_at(layer, p.xz, h);
   if (weather.body <= 0.0) {
-    note_clear(layer, p.xz, h);
+    note_clear(index, p.xz, h, reading);
+    return 0.0;
+  }
+  let profile = thesis_profile(weather, h);
+  if (max(profile.x, max(profile.y, profile.z)) < THESIS_THRESHOLD) {
+    note_clear(index, p.xz, h, reading);
     return 0.0;
   }
   clear_way = 0.0;
-  let profile = thesis_profile(weather, h);
-  if (max(profile.x, max(profile.y, profile.z)) < THESIS_THRESHOLD) {
-    return 0.0;
-  }
   count_read();
   let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
   var field = thesis_field(profile, textureSampleLevel(worley_noise, linear_repeat, tile, reading.level), weather, layer);
@@ -250,16 +258,17 @@ fn thesis_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
     field = thesis_eroded(field, noise, layer, reading.fade);
   }
 #endif
+  clearness = min(clearness, select(1.0, -4.0 * field, field <= 0.0));
   return thesis_density(field, layer);
 }
 #endif
 
 #if TEXTURE
-fn texture_at(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
+fn texture_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let texel = map_texel(layer, p.xz, h);
   var density = body_of(texel.r, cover_at(layer, p.xz));
   if (density <= 0.0) {
-    note_clear(layer, p.xz, h);
+    note_clear(index, p.xz, h, reading);
     return 0.0;
   }
   clear_way = 0.0;
@@ -302,22 +311,23 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
   let layer = scene.layers[index];
   let h = (altitude - layer.base_m) * layer.per_thickness;
   if (h <= 0.0 || h >= 1.0) {
+    clear_way = min(clear_way, max(-h, h - 1.0) / layer.per_thickness);
     return 0.0;
   }
   var density = 0.0;
 #if PROFILE
   if (layer.model == MODEL_PROFILE) {
-    density = profile_at(layer, p, h, reading);
+    density = profile_at(index, layer, p, h, reading);
   }
 #endif
 #if THESIS
   if (layer.model == MODEL_THESIS) {
-    density = thesis_at(layer, p, h, reading);
+    density = thesis_at(index, layer, p, h, reading);
   }
 #endif
 #if TEXTURE
   if (layer.model == MODEL_TEXTURE) {
-    density = texture_at(layer, p, h, reading);
+    density = texture_at(index, layer, p, h, reading);
   }
 #endif
 #if GRID
@@ -374,6 +384,32 @@ fn density_bound(layer: LayerUniforms, greatest_body: f32) -> f32 {
   return bound * layer.density_scale;
 }
 
+// The same between two heights of the layer, of what types there may be.
+fn density_bound_between(
+  layer: LayerUniforms,
+  body: f32,
+  possible: PossibleTypes,
+  low: f32,
+  high: f32,
+) -> f32 {
+  if (body <= 0.0 || low >= 1.0 || high <= 0.0) {
+    return 0.0;
+  }
+  let lowest = clamp(low, 0.0, 1.0);
+  let highest = clamp(high, 0.0, 1.0);
+  var bound = body;
+  if (layer.model == MODEL_PROFILE) {
+    bound = profile_bound_between(body, possible, layer, lowest, highest);
+  }
+  if (layer.model == MODEL_THESIS) {
+    bound = thesis_bound_between(body, possible, layer, lowest, highest);
+  }
+  if (layer.model == MODEL_TEXTURE) {
+    bound = costa_bound(body, layer);
+  }
+  return bound * layer.density_scale;
+}
+
 // Extinction of all layers at a place towards the key light, in 1/m.
 fn shadow_extinction(p: vec3f, reading: Reading) -> f32 {
   let densities = densities_at(p, reading);
@@ -392,24 +428,35 @@ fn light_steps_over(way: f32, count: u32, spread_per_m: f32) -> vec2f {
   return vec2f(select(way * (growth - 1.0) / spread, way / f32(count), spread < 1e-2), select(growth, 1.0, spread < 1e-2));
 }
 
+// How much longer a step towards the light becomes for each unit of optical depth that the one before it found: behind
+// much cloud a step matters less. Equal steps stay equal.
+const LIGHT_GROWTH_BY_DEPTH: f32 = 0.1;
+// Most of it that counts.
+const LIGHT_DEPTH_THAT_COUNTS: f32 = 4.0;
+
 // Optical depth from a place towards the key light: the only way to ask for the sun's visibility through cloud.
 // Steps have each its own length (errata 6) and are sampled in their middle; they cover the reach, or the way out of the
 // domain where that is shorter.
 fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
   let way = min(domain_exit(p, scene.towards_light), scene.light_reach_m);
   let steps = light_steps_over(way, scene.light_steps, scene.light_spread_per_m);
+  let by_depth = select(0.0, LIGHT_GROWTH_BY_DEPTH, steps.y > 1.0);
   var step = steps.x;
   var t = 0.0;
   var depth = 0.0;
   for (var i = 0u; i < scene.light_steps; i++) {
     let q = p + scene.towards_light * (t + 0.5 * step);
-    depth += shadow_extinction(q, Reading(level, i < scene.light_detail_steps, 0.0)) * step;
-    // Beyond this not even the widest octave passes anything.
-    if (depth > 600.0) {
+    let own = shadow_extinction(q, Reading(level, i < scene.light_detail_steps, 0.0, false)) * step;
+#if COUNT
+    counted_light_steps += 1u;
+#endif
+    depth += own;
+    t += step;
+    // Beyond this depth not even the widest octave passes anything.
+    if (depth > 600.0 || t >= way) {
       break;
     }
-    t += step;
-    step *= steps.y;
+    step = min(step * steps.y * (1.0 + by_depth * min(own, LIGHT_DEPTH_THAT_COUNTS)), way - t);
   }
   return depth;
 }

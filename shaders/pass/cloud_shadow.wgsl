@@ -27,7 +27,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let step = length / f32(SHADOW_STEPS);
     for (var i = 0u; i < SHADOW_STEPS; i++) {
       let q = p + ground.towards_light * (segment.x + (f32(i) + 0.5) * step);
-      depth += shadow_extinction(q, Reading(1.0, false, 1.0)) * step;
+      depth += shadow_extinction(q, Reading(1.0, false, 1.0, false)) * step;
     }
   }
   // What droplets scatter downwards passes as through a two-stream layer of asymmetry 0.85.

@@ -1,7 +1,6 @@
 // Local majorants of the density field, from the greatest body of cells of the weather map and the heights within reach:
 // what delta tracking steps by (Woodcock et al. 1965; Kutz et al., "Spectral and Decomposition Tracking for Rendering
 // Heterogeneous Volumes", 2017).
-#import "cloud/bound.wgsl"
 #import "cloud/voxels.wgsl"
 #import "pass/cloud_field.wgsl"
 
@@ -81,25 +80,6 @@ const FINEST: u32 = 3u;
 // Tentative events that a reach may cost before smaller cells are asked.
 const FEW_EVENTS: f32 = 0.7;
 
-fn density_bound_between(layer: LayerUniforms, body: f32, low: f32, high: f32) -> f32 {
-  if (body <= 0.0 || low >= 1.0 || high <= 0.0) {
-    return 0.0;
-  }
-  let lowest = clamp(low, 0.0, 1.0);
-  let greatest = clamp(high, 0.0, 1.0);
-  var bound = body;
-  if (layer.model == MODEL_PROFILE) {
-    bound = profile_bound_between(body, layer, lowest, greatest);
-  }
-  if (layer.model == MODEL_THESIS) {
-    bound = thesis_bound_between(body, layer, lowest, greatest);
-  }
-  if (layer.model == MODEL_TEXTURE) {
-    bound = costa_bound(body, layer);
-  }
-  return bound * layer.density_scale;
-}
-
 fn greatest_field(uv: vec2f, level: u32) -> f32 {
   let cells = f32(32u << level);
   let at = vec2u(min(uv * cells, vec2f(cells - 1.0)));
@@ -135,7 +115,7 @@ fn majorant_of(p: vec3f, altitude: f32, level: u32) -> Majorant {
       let uv = map_uv(layer, p.xz, clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0));
       let on_map = select(clamp(uv, vec2f(0.0), vec2f(1.0)), uv - floor(uv), scene.map_edge == EDGE_REPEAT);
       let body = greatest_body(layer, greatest_field(on_map, level));
-      extinction += density_bound_between(layer, body, low, high) * layer.extinction_per_m;
+      extinction += density_bound_between(layer, body, ANY_TYPES, low, high) * layer.extinction_per_m;
     }
   }
   return Majorant(extinction, reach);

@@ -1,8 +1,8 @@
 // The march: light and opacity of the clouds along each ray of this frame.
 //
-// Steps are short inside cloud and long outside, with a step back on entry (Koblížek 2019, section 3.1.4); each takes
-// the energy-conserving share 1 - exp(-x) of what is left (Hillaire 2016), from a stable series. The start is jittered
-// by the pixel alone, so that a still scene is a still picture.
+// Steps are short inside cloud and long outside, with a way back on entry (Koblížek 2019, section 3.1.4), which halves
+// until it has found the surface; each takes the energy-conserving share 1 - exp(-x) of what is left (Hillaire 2016), from
+// a stable series. The start is jittered by the pixel alone, so that a still scene is a still picture.
 #import "common/camera.wgsl"
 #import "common/update.wgsl"
 #import "generated/BandUniforms.wgsl"
@@ -62,23 +62,57 @@ fn key_light_near(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
   return key_light;
 }
 
+// Longest step at which noise is read at its finest level, in metres.
+const FINEST_STEP_M: f32 = 250.0;
+
 fn step_at(distance_m: f32) -> f32 {
   return scene.step_m + scene.step_growth * distance_m;
 }
 
-fn noise_level(distance_m: f32) -> f32 {
-  return max(0.0, log2(max(step_at(distance_m) / 60.0, 1.0)) * 0.5 + scene.noise_level_bias);
+// Detail is whole up to half the distance at which it has faded to its mean.
+fn detail_fade(distance_m: f32) -> f32 {
+  return clamp(2.0 * distance_m / scene.detail_distance_m - 1.0, 0.0, 1.0);
 }
 
-// Samples inside cloud wait here for their light. Rays that run side by side meet cloud at different steps; lit one
-// after the other they would wait for each other, lit together they do not.
+fn noise_level(distance_m: f32) -> f32 {
+  return max(0.0, log2(max(step_at(distance_m) / FINEST_STEP_M, 1.0)) * 0.5 + scene.noise_level_bias);
+}
+
+// Samples that follow each other inside cloud are lit as one, at their common centre, until they send scene.light_share of
+// what the eye sees: light changes slowly along the ray, and marching towards the light costs more than a sample. And no
+// farther than over so many ordinary steps.
+const LIT_STEPS: f32 = 8.0;
+
+// Sums over samples that are lit together, each weighted by its share.
+struct Group {
+  share: f32,
+  distance: f32,
+  densities: vec4f,
+  // Where the first of them is.
+  begin: f32,
+}
+
+// Groups wait here for their light. Rays that run side by side meet cloud at different steps; lit one after the other
+// they would wait for each other, lit together they do not.
 const WAITING: u32 = 8u;
 var<private> waiting_count: u32;
 var<private> waiting_distance: array<f32, 8>;
 var<private> waiting_share: array<f32, 8>;
 var<private> waiting_densities: array<vec4f, 8>;
 
-// Light of the samples that wait, seen through the air and the cloud before them.
+var<private> group: Group;
+
+fn close_group() {
+  if (group.share > 0.0) {
+    waiting_distance[waiting_count] = group.distance / group.share;
+    waiting_share[waiting_count] = group.share;
+    waiting_densities[waiting_count] = group.densities / group.share;
+    waiting_count += 1u;
+    group = Group(0.0, 0.0, vec4f(0.0), 0.0);
+  }
+}
+
+// Light of the groups that wait, seen through the air and the cloud before them.
 fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
   var light = vec3f(0.0);
   for (var k = 0u; k < waiting_count; k++) {
@@ -86,9 +120,6 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
     let p = origin + dir * t;
     let altitude = altitude_of(p);
     let depth = sun_optical_depth(p, noise_level(t));
-#if COUNT
-    atomicAdd(&counters[2], scene.light_steps);
-#endif
     let source = source_of(key_light_near(p, altitude, t), depth, altitude, waiting_densities[k]);
 #if AIR
     let ahead = air_before(dir, t);
@@ -103,60 +134,70 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
 
 var<private> steps_left: u32;
 
-// Length of the steps that look for a surface, relative to ordinary ones.
-const SURFACE_STEP: f32 = 0.3;
-// Clear samples after which long steps are taken.
+// Shortest step that looks for a surface, relative to ordinary ones.
+const SURFACE_STEP: f32 = 0.1;
+// Clear samples after which steps become longer.
 const CLEAR_SAMPLES: u32 = 4u;
-// Longest step, relative to ordinary ones, where cloud may be near; and the shortest one before a surface.
-const NEAR_STRIDE: f32 = 1.3;
+// Shortest step before a surface, relative to ordinary ones.
 const NEAREST_STRIDE: f32 = 0.25;
 // Steps inside begin short and grow by this: clouds are thin at their surface, where the light is, and by its extinction
 // alone the first sample would stand for a long way into denser cloud.
-const GROWTH_INSIDE: f32 = 2.0;
+const GROWTH_INSIDE: f32 = 1.5;
 
-// One stretch of the ray. Three lengths of step: long ones in clear air; on meeting cloud a step back, and short ones
-// to find its surface; inside, steps that grow until they have equal optical depth, longer where little is left to see.
+// One stretch of the ray. Clear air is crossed as far as the map promises it, else in steps that are shorter near
+// surfaces; on meeting cloud half of the last step is taken back, and so on, until its surface is found; inside, steps grow
+// until they have equal optical depth, longer where little is left to see. An empty_stride of 1 makes all steps equal.
 fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
   var seen = seen_before;
+  let is_varied = scene.empty_stride > 1.0;
   // How much of the way before a sample counts as its own, so that even cloud absorbs what the whole stretch absorbs,
   // whatever the jitter.
   var behind = jitter * step_at(segment.x);
   var t = segment.x + behind;
-  var advanced = 0.0;
+  // How much of the last step nothing was known of.
+  var unseen = 0.0;
+  // The nearest place that has cloud, where the surface is before it.
+  var met = 0.0;
   var inside_step = step_at(segment.x);
   var clear_samples = CLEAR_SAMPLES;
   while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
     steps_left -= 1u;
+    if (waiting_count == WAITING) {
+      seen.light += light_of_waiting(origin, dir);
+    }
 #if COUNT
     atomicAdd(&counters[1], 1u);
 #endif
     let step = step_at(t);
-    let surface_step = step * SURFACE_STEP;
-    let fade = clamp(t / scene.detail_distance_m, 0.0, 1.0);
+    let surface_step = select(step, step * SURFACE_STEP, is_varied);
+    let fade = detail_fade(t);
     clearness = 1.0;
     clear_way = FAR_M;
-    let densities = densities_at(origin + dir * t, Reading(noise_level(t), fade < 1.0, fade));
+    let densities = densities_at(origin + dir * t, Reading(noise_level(t), fade < 1.0, fade, true));
     let extinction = extinction_of(densities);
     if (extinction <= 0.0) {
+      close_group();
       inside_step = 0.0;
       clear_samples += 1u;
-      // Where the map promises clear air all that way; else long steps only after some clear ones, away from surfaces.
-      let stride = select(min(scene.empty_stride, NEAR_STRIDE), scene.empty_stride, clear_way >= FAR_M);
-      let far = select(step, step * stride, clear_samples > CLEAR_SAMPLES + 3u && clearness >= 1.0);
-      let ordinary = select(far * max(clearness, NEAREST_STRIDE), clear_way, clear_way > step * stride && clear_way < FAR_M);
-      advanced = select(surface_step, ordinary, clear_samples > CLEAR_SAMPLES);
-      // On average cloud begins half way to the next sample; but not within what the map promises to be clear.
-      behind = select(0.5 * advanced, 0.0, advanced == clear_way);
+      let stride = select(1.0, scene.empty_stride, clear_samples > CLEAR_SAMPLES);
+      let near = step * select(1.0, stride * max(clearness, NEAREST_STRIDE), is_varied);
+      // Where the map promises clear air, all of that way and a share of a step, or neighbours would go on in rows.
+      let ahead = select(near, clear_way + jitter * near, is_varied && clear_way > near);
+      let advanced = select(ahead, min(max(0.5 * (met - t), surface_step), met - t), t < met);
+      unseen = advanced - min(clear_way, advanced);
+      // On average cloud begins half way through what was not seen.
+      behind = 0.5 * unseen;
       t += advanced;
-    } else if (advanced > 1.5 * surface_step && extinction * step > 0.5 * scene.step_depth) {
-      // Entered a dense cloud from clear air: go back to look for its surface.
-      t -= advanced - surface_step;
-      behind = 0.5 * surface_step;
-      advanced = 0.0;
+    } else if (unseen > 1.5 * surface_step && extinction * step > 0.5 * scene.step_depth) {
+      // Entered a dense cloud from clear air.
+      met = t;
+      unseen *= 0.5;
+      t -= unseen;
+      behind = 0.5 * unseen;
       clear_samples = 0u;
     } else {
       clear_samples = 0u;
-      advanced = 0.0;
+      unseen = 0.0;
       let by_depth = max(scene.step_depth / (extinction * max(seen.transmittance, 0.15)), surface_step);
       let wanted = min(min(step, by_depth), max(GROWTH_INSIDE * inside_step, surface_step));
       inside_step = wanted;
@@ -165,12 +206,12 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       behind = 0.5 * wanted;
       let alpha = absorbed(extinction * length);
       let share = seen.transmittance * alpha;
-      waiting_distance[waiting_count] = t;
-      waiting_share[waiting_count] = share;
-      waiting_densities[waiting_count] = densities;
-      waiting_count += 1u;
-      if (waiting_count == WAITING) {
-        seen.light += light_of_waiting(origin, dir);
+      group.begin = select(group.begin, t, group.share <= 0.0);
+      group.share += share;
+      group.distance += share * t;
+      group.densities += share * densities;
+      if (group.share > scene.light_share || t - group.begin > LIT_STEPS * step) {
+        close_group();
       }
       seen.distance_sum += share * t;
       seen.weight_sum += share;
@@ -178,6 +219,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       t += wanted;
     }
   }
+  close_group();
   return seen;
 }
 
@@ -218,6 +260,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   textureStore(distance_out, ray, vec4f(mean_distance, 0.0, 0.0, 0.0));
 #if COUNT
   atomicAdd(&counters[0], 1u);
+  atomicAdd(&counters[2], counted_light_steps);
   atomicAdd(&counters[3], counted_reads);
 #endif
 }

@@ -267,6 +267,7 @@ fn quality(step: Step) -> Quality {
         light_steps: step.light,
         light_growth: 1.0,
         light_detail_steps: 128,
+        light_share: 0.0,
         octaves: 0,
         early_exit: 0.0,
         grid_voxels: step.grid,

@@ -115,11 +115,13 @@ fn quality(settings: Settings) -> Quality {
             view_steps: 64,
             step_m: 12.0,
             step_growth: 0.018,
+            step_depth: 2.5,
             empty_stride: 2.0,
             light_steps: 6,
             light_reach_m: 1500.0,
             light_growth: 1.8,
             light_detail_steps: 6,
+            light_share: 0.0,
             octaves: 0,
             ..defaults
         },

@@ -6,6 +6,7 @@
 
 mod bakes;
 mod blue_noise;
+mod clearance;
 mod context;
 mod interactive;
 mod output;
@@ -29,6 +30,7 @@ use crate::plan::{FramePlan, HistoryKey};
 use crate::scene::Frame;
 
 use bakes::Bakes;
+use clearance::Clearance;
 use context::Pace;
 use pass::sky::SkyTables;
 use targets::Targets;
@@ -42,7 +44,11 @@ pub use still::Still;
 /// Every program that a frame of this plan may ask for, bakes and the clear sky included.
 pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
     let sky = pass::sky::programs().into_iter().filter(|_| !plan.plain);
-    sky.chain(bakes::programs(plan)).chain(voxels::programs(plan)).chain(passes::programs(plan, true)).collect()
+    sky.chain(bakes::programs(plan))
+        .chain(voxels::programs(plan))
+        .chain(clearance::programs(plan))
+        .chain(passes::programs(plan, true))
+        .collect()
 }
 
 /// Why a picture could not be made.
@@ -126,6 +132,7 @@ pub struct Renderer {
     sky: SkyTables,
     bakes: Bakes,
     weather: WeatherMap,
+    clearance: Clearance,
     voxels: Voxels,
     targets: Option<Targets>,
     history: Option<History>,
@@ -159,6 +166,7 @@ impl Renderer {
             sky: SkyTables::new(gpu)?,
             bakes: Bakes::new(gpu)?,
             weather: WeatherMap::new(),
+            clearance: Clearance::default(),
             voxels: Voxels::default(),
             targets: None,
             history: None,
@@ -241,6 +249,11 @@ impl Renderer {
     /// Device memory held by textures, in bytes.
     pub fn memory_bytes(&self) -> u64 {
         let targets = self.targets.as_ref().map_or(0, Targets::bytes);
-        self.bakes.bytes() + self.weather.bytes() + self.voxels.bytes() + self.sky.bytes() + targets
+        self.bakes.bytes()
+            + self.weather.bytes()
+            + self.clearance.bytes()
+            + self.voxels.bytes()
+            + self.sky.bytes()
+            + targets
     }
 }

@@ -94,9 +94,13 @@ impl Renderer {
             Some(march) => {
                 self.weather.update(&context, &scene.weather, frame.time_secs, &mut jobs)?;
                 let tracks = plan.tracks && march.baked.is_none();
-                self.weather.update_bounds(&context, (march.skip, tracks), &mut jobs)?;
+                self.weather.update_bounds(&context, tracks, &mut jobs)?;
+                self.clearance.update(&context, (frame, march), &self.weather, &mut jobs)?;
             }
-            None => self.weather.clear(),
+            None => {
+                self.weather.clear();
+                self.clearance.clear();
+            }
         }
         let mut read_by_bake = self.bakes.resources();
         read_by_bake.extend(self.weather.resources());
@@ -109,6 +113,7 @@ impl Renderer {
         let mut shared = self.bakes.resources();
         shared.extend(self.sky.resources());
         shared.extend(self.weather.resources());
+        shared.extend(self.clearance.resources());
         shared.extend(self.voxels.resources());
         shared
     }

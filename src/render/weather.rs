@@ -12,9 +12,9 @@ use crate::scene::{MapLayer, MapSource, Weather};
 
 /// Edge length of the map.
 const SIDE: u32 = 512;
-/// Cells across the map for which the march knows its greatest field.
+/// Cells across the map that a layer's reach is that of.
 pub(super) const CELLS: u32 = 64;
-/// The same for tracking, by the names that shaders give them.
+/// Cells across the map for which tracking knows its greatest field, by the names that shaders give them.
 const TRACKING_CELLS: [(&str, u32); 4] =
     [("bound_of_32", 32), ("bound_of_64", 64), ("bound_of_128", 128), ("bound_of_256", 256)];
 /// Largest user image.
@@ -42,7 +42,7 @@ pub(super) struct WeatherMap {
     states: Vec<State>,
     /// The joined map of each layer over those below it; the last is the map.
     joined: Vec<Texture>,
-    /// The greatest field of the map around each of its cells, by name, where rays skip or track by it.
+    /// The greatest field of the map around each of its cells, by name, where paths track by it.
     bounds: Vec<(&'static str, Texture)>,
     /// States and share that each joined map was made from.
     made_from: Vec<(StateKey, StateKey, f32)>,
@@ -91,18 +91,14 @@ impl WeatherMap {
     pub(super) fn update_bounds(
         &mut self,
         context: &Context<'_>,
-        (skips, tracks): (bool, bool),
+        tracks: bool,
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
-        let skipping = skips.then_some(("weather_bound", CELLS));
-        let tracking = TRACKING_CELLS.into_iter().filter(|_| tracks);
-        let wanted: Vec<(&'static str, u32)> = skipping.into_iter().chain(tracking).collect();
-        self.bounds.retain(|(name, _)| wanted.iter().any(|(other, _)| name == other));
-        let Some(map) = self.joined.last() else { return Ok(()) };
-        for (name, cells) in wanted {
-            if self.bounds.iter().any(|(other, _)| *other == name) {
-                continue;
-            }
+        if !tracks {
+            self.bounds.clear();
+        }
+        let Some(map) = self.joined.last().filter(|_| tracks && self.bounds.is_empty()) else { return Ok(()) };
+        for (name, cells) in TRACKING_CELLS {
             let texture = Texture::new_2d(context.gpu, name, [cells; 2], wgpu::TextureFormat::R32Float)?;
             let bound = vec![
                 ("weather_map", wgpu::BindingResource::TextureView(&map.view)),
@@ -113,6 +109,11 @@ impl WeatherMap {
             self.bounds.push((name, texture));
         }
         Ok(())
+    }
+
+    /// The map, where there is one.
+    pub(super) fn map(&self) -> Option<&Texture> {
+        self.joined.last()
     }
 
     /// Everything that exists, by the name shaders give it.

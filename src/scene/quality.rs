@@ -48,29 +48,31 @@ params! {
         /// Most steps along a view ray.
         view_steps: u32 = 160, 4..=1024, None;
         /// Length of the first step inside cloud.
-        step_m: f32 = 55.0, 1.0..=1000.0, Metres, logarithmic;
+        step_m: f32 = 50.0, 1.0..=1000.0, Metres, logarithmic;
         /// Growth of the step with distance: metres more per metre.
-        step_growth: f32 = 0.012, 0.0..=0.1, None;
+        step_growth: f32 = 0.0055, 0.0..=0.1, None;
         /// Optical depth of a step inside dense cloud; the step is never longer than its length by distance.
-        step_depth: f32 = 2.5, 0.02..=10_000.0, None, logarithmic;
-        /// Length of a step in clear air relative to one in cloud.
-        empty_stride: f32 = 3.0, 1.0..=8.0, None;
+        step_depth: f32 = 1.0, 0.02..=10_000.0, None, logarithmic;
+        /// Longest step near cloud but outside, relative to one in cloud; farther away steps are as long as the weather map allows. 1 takes equal steps everywhere.
+        empty_stride: f32 = 1.3, 1.0..=8.0, None;
         /// Greatest distance at which clouds are drawn.
         max_distance_m: f32 = 150_000.0, 1000.0..=500_000.0, Metres, logarithmic;
-        /// Steps from a sample towards the light; up to 2.5 times as many where layers are thick or the light is low.
-        light_steps: u32 = 10, 1..=128, None;
+        /// Steps from a sample towards the light; up to three and a half times as many where layers are thick or the light is low.
+        light_steps: u32 = 20, 1..=128, None;
         /// Longest way covered towards the light; shorter where it leaves the clouds before.
         light_reach_m: f32 = 100_000.0, 50.0..=500_000.0, Metres, logarithmic;
         /// Length of each light step relative to the one before, over a way of a kilometre; more over longer ways.
-        light_growth: f32 = 1.2, 1.0..=4.0, None;
+        light_growth: f32 = 1.08, 1.0..=4.0, None;
         /// How many of the light steps read the small noise.
-        light_detail_steps: u32 = 0, 0..=128, None;
+        light_detail_steps: u32 = 6, 0..=128, None;
+        /// Samples that follow each other inside cloud are lit as one until they send so much of what the eye sees. 0 lights each by itself.
+        light_share: f32 = 0.33, 0.0..=1.0, None;
         /// Octaves of multiple scattering on top of the first. 0 is true single scattering.
         octaves: u32 = 5, 0..=7, None;
         /// Transmittance below which a ray ends.
         early_exit: f32 = 0.02, 0.0..=0.2, None;
-        /// Distance at which the small noise has faded to its mean.
-        detail_distance_m: f32 = 60_000.0, 100.0..=500_000.0, Metres, logarithmic;
+        /// Distance at which the small noise has faded to its mean; it begins to at half of it.
+        detail_distance_m: f32 = 150_000.0, 100.0..=500_000.0, Metres, logarithmic;
         /// Coarser (above 0) or finer mip levels of the noises with distance.
         noise_level_bias: f32 = 0.0, -4.0..=4.0, None;
         /// Voxels across a box into which the density of all its clouds is baked before it is read, half as many upwards (Costa 2023, table 10). 0 reads the field as it is.
@@ -82,7 +84,7 @@ params! {
         /// Samples of each pixel in a still, and in the window at rest. A picture that moves has one.
         pixel_samples: u32 = 4, 1..=64, None;
         /// Length of the steps of a still, and of the window at rest, relative to those of a picture that moves.
-        still_step: f32 = 0.5, 0.1..=1.0, None;
+        still_step: f32 = 0.7, 0.1..=1.0, None;
         /// Resolution of the picture relative to its frame.
         resolution_scale: f32 = 1.0, 0.1..=2.0, None;
         /// Edge length of the map of cloud shadows on the ground.
@@ -98,10 +100,11 @@ impl Quality {
         match level {
             QualityLevel::Draft => Self {
                 view_steps: 96,
-                step_m: 80.0,
-                step_growth: 0.016,
-                light_steps: 5,
-                light_growth: 1.4,
+                step_m: 110.0,
+                step_growth: 0.012,
+                step_depth: 2.5,
+                light_steps: 9,
+                light_growth: 1.2,
                 light_detail_steps: 0,
                 octaves: 4,
                 pixel_samples: 1,
@@ -115,11 +118,12 @@ impl Quality {
                 view_steps: 400,
                 step_m: 18.0,
                 step_growth: 0.0025,
-                step_depth: 1.0,
-                empty_stride: 2.0,
-                light_steps: 14,
-                light_growth: 1.2,
-                light_detail_steps: 3,
+                step_depth: 0.5,
+                empty_stride: 1.1,
+                light_steps: 24,
+                light_growth: 1.08,
+                light_detail_steps: 10,
+                light_share: 0.2,
                 octaves: 6,
                 early_exit: 0.004,
                 update: UpdateFraction::Full,
@@ -132,14 +136,15 @@ impl Quality {
                 view_steps: 1000,
                 step_m: 10.0,
                 step_growth: 0.0014,
-                step_depth: 0.5,
-                empty_stride: 1.5,
-                light_steps: 24,
-                light_growth: 1.15,
-                light_detail_steps: 6,
+                step_depth: 0.25,
+                empty_stride: 1.1,
+                light_steps: 36,
+                light_growth: 1.06,
+                light_detail_steps: 24,
+                light_share: 0.05,
                 octaves: 7,
                 early_exit: 0.001,
-                detail_distance_m: 200_000.0,
+                detail_distance_m: 400_000.0,
                 update: UpdateFraction::Full,
                 pixel_samples: 8,
                 still_step: 1.0,

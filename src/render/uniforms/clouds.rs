@@ -150,13 +150,13 @@ fn front(scene: &Scene, eye: &Eye, time_secs: f64) -> Vec4 {
 /// Way through the clouds, in metres, up to which the steps towards the light are as many as the quality says.
 const USUAL_WAY_M: f32 = 3000.0;
 /// How many times as many there are for the longest ways.
-const MOST_LIGHT_STEPS: f32 = 2.5;
+const MOST_LIGHT_STEPS: f32 = 3.5;
 
-/// Steps towards the light: more where layers are thick or the light is low. A way four times as long has twice as many.
+/// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
 fn light_steps(usual: u32, thickness_m: f32, light_sine: f32) -> u32 {
     let way_m = thickness_m / light_sine.abs().max(0.02);
-    let more = (way_m / USUAL_WAY_M).sqrt().clamp(1.0, MOST_LIGHT_STEPS);
+    let more = (way_m / USUAL_WAY_M).powf(0.4).clamp(1.0, MOST_LIGHT_STEPS);
     ((usual as f32 * more).round() as u32).clamp(1, 128)
 }
 
@@ -238,10 +238,10 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         noise_level_bias: quality.noise_level_bias,
         max_distance_m: quality.max_distance_m,
         step_depth: quality.step_depth,
+        light_share: quality.light_share,
         pad0: 0.0,
         pad1: 0.0,
         pad2: 0.0,
-        pad3: 0.0,
         layers,
     }
 }
@@ -271,8 +271,8 @@ mod tests {
     #[test]
     fn long_ways_towards_the_light_have_more_steps() {
         assert_eq!(light_steps(10, 1500.0, 0.7), 10, "a high sun over cumulus");
-        assert_eq!(light_steps(10, 6000.0, 0.5), 20, "four times the usual way");
-        assert_eq!((light_steps(10, 1500.0, 0.0), light_steps(10, 1500.0, -0.05)), (25, 25), "the horizon");
+        assert_eq!(light_steps(10, 8500.0, 0.5), 20, "a little under six times the usual way");
+        assert_eq!((light_steps(10, 3000.0, 0.0), light_steps(10, 3000.0, -0.02)), (35, 35), "the horizon");
         assert_eq!((light_steps(1, 0.0, 1.0), light_steps(128, 9000.0, 0.1)), (1, 128), "at the ends");
     }
 

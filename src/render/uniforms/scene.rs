@@ -201,14 +201,14 @@ gpu_struct! {
         pub max_distance_m: f32,
         /// Optical depth of a step inside cloud.
         pub step_depth: f32,
+        /// What samples that are lit together may send, relative to all light that reaches the eye.
+        pub light_share: f32,
         /// Keeps the layers apart.
         pub pad0: f32,
         /// Keeps the layers apart.
         pub pad1: f32,
         /// Keeps the layers apart.
         pub pad2: f32,
-        /// Keeps the layers apart.
-        pub pad3: f32,
         /// The layers; as many as the program was compiled for count.
         pub layers: [LayerUniforms; 4],
     }

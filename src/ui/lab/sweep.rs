@@ -17,16 +17,16 @@ struct AxisForm {
 
 /// Parameters that are worth a sweep, with values to begin with.
 const OFFERED: [(&str, &str); 10] = [
-    ("light_steps", "2, 4, 6, 8, 12, 16, 24, 32"),
-    ("step_m", "20, 30, 40, 55, 80, 120"),
-    ("step_growth", "0.003, 0.006, 0.009, 0.012, 0.02"),
+    ("light_steps", "4, 6, 8, 12, 16, 20, 28, 40"),
+    ("step_m", "20, 35, 50, 80, 120"),
+    ("step_growth", "0.002, 0.004, 0.0055, 0.008, 0.012"),
     ("step_depth", "0.5, 1, 2.5, 5"),
     ("view_steps", "32, 64, 96, 160"),
-    ("light_growth", "1.1, 1.2, 1.4, 1.8"),
+    ("light_growth", "1, 1.05, 1.08, 1.15, 1.3"),
     ("octaves", "0, 1, 3, 5"),
-    ("empty_stride", "1, 2, 3, 5"),
+    ("empty_stride", "1, 1.3, 2, 3"),
     ("early_exit", "0, 0.005, 0.02, 0.05"),
-    ("detail_distance_m", "5000, 20000, 60000"),
+    ("detail_distance_m", "10000, 50000, 150000"),
 ];
 
 /// Relative error at which a truth is good enough.

@@ -1,0 +1,106 @@
+//! How far it is to cloud from every place over the weather map: what rays cross clear air by.
+
+use super::context::{Bound, Context, Extent};
+use super::passes::{field_key, view_of};
+use super::uniforms::field_uniforms;
+use super::uniforms::scene::LayerUniforms;
+use super::weather::WeatherMap;
+use crate::gpu::{GpuError, Job, ProgramKey, Texture};
+use crate::plan::{FramePlan, MarchVariant};
+use crate::scene::{Frame, MAX_LAYERS};
+
+/// Cells across the map, upwards through each layer, and across the map again.
+const CELLS: [u32; 3] = [128, 16, 128];
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// What the ways depend on.
+#[derive(Clone, Debug, PartialEq)]
+struct From {
+    map: u64,
+    layers: [LayerUniforms; MAX_LAYERS],
+    march: [ProgramKey; 2],
+}
+
+/// The ways, where rays skip by them.
+#[derive(Debug, Default)]
+pub(super) struct Clearance {
+    made: Option<(From, Texture)>,
+}
+
+impl Clearance {
+    /// Appends the jobs that find the ways, where a march wants them and they are not known.
+    pub(super) fn update(
+        &mut self,
+        context: &Context<'_>,
+        (frame, march): (&Frame<'_>, MarchVariant),
+        weather: &WeatherMap,
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), GpuError> {
+        let Some(map) = weather.map().filter(|_| march.skip) else {
+            self.made = None;
+            return Ok(());
+        };
+        let field = field_uniforms(frame);
+        let from = From { map: weather.count(), layers: field.layers.map(in_place), march: keys(march) };
+        if self.made.as_ref().is_some_and(|(made, _)| *made == from) {
+            return Ok(());
+        }
+        let scene = context.gpu.uniform("scene", bytemuck::bytes_of(&field));
+        let [there, back] = [(); 2].map(|()| Texture::new_3d(context.gpu, "clear_ways", CELLS, (1, FORMAT)));
+        let [cells, spread] = &from.march;
+        let bound =
+            vec![("scene", scene.as_entire_binding()), ("weather_map", view_of(map)), ("ways_out", view_of(&there))];
+        jobs.push(context.whole("clear_cells", cells, &bound, Extent::image([CELLS[0], CELLS[2]]))?);
+        for (axis, before, after) in [(0, &there, &back), (1, &back, &there), (2, &there, &back)] {
+            let bound = vec![
+                ("scene", scene.as_entire_binding()),
+                ("ways_before", view_of(before)),
+                ("ways_out", view_of(after)),
+            ];
+            let key = spread.clone().with_constant("AXIS", axis);
+            jobs.extend(context.banded("clear_spread", &key, &bound, Extent::solid(CELLS))?);
+        }
+        self.made = Some((from, back));
+        Ok(())
+    }
+
+    /// The ways, by the name shaders give them.
+    pub(super) fn resources(&self) -> Bound<'_> {
+        self.made.iter().map(|(_, ways)| ("clear_ways", view_of(ways))).collect()
+    }
+
+    /// Forgets everything, as when no cloud is drawn.
+    pub(super) fn clear(&mut self) {
+        self.made = None;
+    }
+
+    /// Device memory in bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.made.as_ref().map_or(0, |(_, ways)| ways.bytes())
+    }
+}
+
+/// A layer without where it has drifted to: the ways drift with it.
+fn in_place(layer: LayerUniforms) -> LayerUniforms {
+    LayerUniforms {
+        map_from_world: glam::Vec4::new(0.0, 0.0, layer.map_from_world.z, 0.0),
+        shape_from_world: glam::Vec4::ZERO,
+        detail_from_world: glam::Vec4::ZERO,
+        curl_from_world: glam::Vec4::ZERO,
+        ..layer
+    }
+}
+
+/// The programs that say which cells may hold cloud, and how far it is to them.
+fn keys(march: MarchVariant) -> [ProgramKey; 2] {
+    let march = MarchVariant { octaves: 0, air: false, ground: false, float: false, ..march.to_bake() };
+    ["pass/clear_cells.wgsl", "pass/clear_spread.wgsl"].map(|file| field_key(file, march))
+}
+
+/// The programs that make what a plan calls for.
+pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
+    let Some(march) = plan.march.filter(|march| march.skip) else { return Vec::new() };
+    let [cells, spread] = keys(march);
+    let along = |axis| spread.clone().with_constant("AXIS", axis);
+    vec![cells, along(0), along(1), along(2)]
+}

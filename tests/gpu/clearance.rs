@@ -1,0 +1,91 @@
+//! The ways that the weather map promises to be clear, against the density field itself.
+
+use glam::{Vec3, Vec4};
+use nephoscope::gpu::{ProgramKey, Texture, readback};
+use wgpu::util::DeviceExt as _;
+
+use crate::common::field::{Bound, Field, linear_repeat, run, view_of};
+use crate::common::slab::{FLAT, March, PROFILE, THESIS, noisy_layer};
+use crate::common::{Case, Random, bits3, gpu};
+
+/// As many cells as the renderer has.
+const CELLS: [u32; 3] = [128, 16, 128];
+
+fn key(file: &'static str, layers: usize) -> ProgramKey {
+    ProgramKey::plain(file)
+        .with_flags(["PROFILE", "THESIS", "DETAIL", "CURL"])
+        .with_constant("DOMAIN", FLAT)
+        .with_constant("LAYERS", u32::try_from(layers).expect("few layers"))
+}
+
+/// The ways over the baked map, made by the production passes.
+fn ways(scene: &wgpu::Buffer, layers: usize) -> Texture {
+    let [there, back] = [(); 2].map(|()| Texture::new_3d(gpu(), "ways", CELLS, (1, wgpu::TextureFormat::Rgba16Float)));
+    let map = &Field::baked().map;
+    let scene = || ("scene", scene.as_entire_binding());
+    let bound = vec![scene(), ("weather_map", view_of(map)), ("ways_out", view_of(&there))];
+    run(&key("pass/clear_cells.wgsl", layers), &bound, [CELLS[0], CELLS[2], 1]);
+    for (axis, before, after) in [(0, &there, &back), (1, &back, &there), (2, &there, &back)] {
+        let bound = vec![scene(), ("ways_before", view_of(before)), ("ways_out", view_of(after))];
+        run(&key("pass/clear_spread.wgsl", layers).with_constant("AXIS", axis), &bound, CELLS);
+    }
+    back
+}
+
+/// Results of `test/eval_clear.wgsl`.
+fn evaluate(march: &March, layers: usize, cases: &[Case]) -> Vec<[f32; 4]> {
+    let storage = |contents: &[u8], usage| {
+        gpu().device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("cases"), contents, usage })
+    };
+    let input = storage(bytemuck::cast_slice(cases), wgpu::BufferUsages::STORAGE);
+    let results = vec![0_u8; cases.len() * 16];
+    let output = storage(&results, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let scene = gpu().uniform("scene", bytemuck::bytes_of(&march.scene));
+    let ways = ways(&scene, layers);
+    let mut bound: Bound<'_> = vec![
+        ("cases", input.as_entire_binding()),
+        ("results", output.as_entire_binding()),
+        ("scene", scene.as_entire_binding()),
+        ("weather_map", view_of(&Field::baked().map)),
+        ("clear_ways", view_of(&ways)),
+        ("linear_repeat", wgpu::BindingResource::Sampler(linear_repeat())),
+    ];
+    bound.extend(Field::baked().noises());
+    let rows = u32::try_from(cases.len().div_ceil(512)).expect("few cases");
+    run(&key("test/eval_clear.wgsl", layers).with_flags(["SKIP"]), &bound, [512, rows, 1]);
+    let bytes = readback::buffer(gpu(), &output).expect("the results can be read");
+    bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned).collect()
+}
+
+#[test]
+fn no_cloud_stands_where_the_map_promises_clear_air() {
+    let mut random = Random::new(41);
+    for models in [&[PROFILE][..], &[THESIS], &[PROFILE, THESIS]] {
+        for (coverage, anvil) in [(0.25, 0.0), (0.5, 0.7), (0.75, 0.2)] {
+            let mut march = March::slab(3000.0, 0.04, Vec3::Y);
+            for (index, (slot, model)) in march.scene.layers.iter_mut().zip(models).enumerate() {
+                // The second layer stands higher and its map is another.
+                let base_m = 600.0 + 500.0 * index as f32;
+                *slot = noisy_layer(*model, base_m, base_m + 2200.0, coverage);
+                slot.lean = Vec4::new(4000.0, -1500.0, slot.lean.z, 0.0);
+                slot.map_from_world += Vec4::new(0.3, 0.1, 0.0, 0.0) * index as f32;
+                slot.anvil = anvil;
+            }
+            let mut cases: Vec<Case> = Vec::new();
+            for _ in 0..100_000 {
+                let p = Vec3::new(random.between(-2e4, 2e4), random.between(300.0, 3600.0), random.between(-2e4, 2e4));
+                let offset = random.direction() * random.between(0.0, 0.999);
+                cases.push([bits3(p), bits3(offset), [0; 4], [0; 4]]);
+            }
+            let (mut promised, mut beyond) = (0, 0);
+            for ([way, there, farther, here], case) in evaluate(&march, models.len(), &cases).into_iter().zip(&cases) {
+                assert!((0.0..1e5).contains(&way), "models {models:?}: a way of {way} m");
+                assert!(there <= 0.0 || here > 0.0, "models {models:?}, {coverage}: cloud within {way} m of {case:?}");
+                promised += u32::from(way > 100.0);
+                beyond += u32::from(way > 100.0 && farther > 0.0);
+            }
+            assert!(promised > 10_000, "models {models:?}, {coverage}: only {promised} places have a way");
+            assert!(beyond > 5, "models {models:?}, {coverage}: cloud is far from every way ({beyond} are near)");
+        }
+    }
+}
