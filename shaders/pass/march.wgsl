@@ -102,14 +102,17 @@ var<private> waiting_densities: array<vec4f, 8>;
 
 var<private> group: Group;
 
+// Less than this nobody sees, and its mean densities would be lost to rounding.
+const LEAST_SHARE: f32 = 1e-12;
+
 fn close_group() {
-  if (group.share > 0.0) {
+  if (group.share > LEAST_SHARE) {
     waiting_distance[waiting_count] = group.distance / group.share;
     waiting_share[waiting_count] = group.share;
     waiting_densities[waiting_count] = group.densities / group.share;
     waiting_count += 1u;
-    group = Group(0.0, 0.0, vec4f(0.0), 0.0);
   }
+  group = Group(0.0, 0.0, vec4f(0.0), 0.0);
 }
 
 // Light of the groups that wait, seen through the air and the cloud before them.

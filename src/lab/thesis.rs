@@ -117,6 +117,7 @@ fn quality(settings: Settings) -> Quality {
             step_growth: 0.018,
             step_depth: 2.5,
             empty_stride: 2.0,
+            skip_clear: false,
             light_steps: 6,
             light_reach_m: 1500.0,
             light_growth: 1.8,

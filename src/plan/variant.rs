@@ -92,13 +92,14 @@ impl MarchVariant {
         let repeats = scene.weather.edge == MapEdge::Repeat;
         let skip = repeats
             && baked.is_none()
+            && frame.quality.skip_clear
             && frame.quality.empty_stride > 1.0
             && any(|layer| !matches!(layer.model, DensityModel::Uniform | DensityModel::Grid));
         why.either(
             skip,
             "empty-space skipping",
             "the map says where nothing is",
-            "every step is short, or the map ends, or voxels are read",
+            "it is switched off, or steps are equal, or the map ends, or voxels are read",
         );
         Some(Self {
             layers: u32::try_from(layers.len()).unwrap_or(1),

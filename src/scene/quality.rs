@@ -55,6 +55,8 @@ params! {
         step_depth: f32 = 1.0, 0.02..=10_000.0, None, logarithmic;
         /// Longest step near cloud but outside, relative to one in cloud; farther away steps are as long as the weather map allows. 1 takes equal steps everywhere.
         empty_stride: f32 = 1.3, 1.0..=8.0, None;
+        /// Clear air is crossed in one step as far as the weather map promises it.
+        skip_clear: bool = true;
         /// Greatest distance at which clouds are drawn.
         max_distance_m: f32 = 150_000.0, 1000.0..=500_000.0, Metres, logarithmic;
         /// Steps from a sample towards the light; up to three and a half times as many where layers are thick or the light is low.

@@ -221,3 +221,24 @@ fn the_distance_kept_for_reprojection_is_that_of_the_light() {
     let distance = march.run().distance_m[0];
     assert!((distance - 100.0).abs() < 1.0, "{distance} m, not a free path of 100 m");
 }
+
+#[test]
+fn samples_that_are_lit_together_send_about_the_light_that_each_would() {
+    for tau in [1e-5, 1e-3, 0.1, 1.0, 8.0, 30.0] {
+        for (mu, mu0, up) in [(1.0, 0.5, false), (0.3, 0.9, true), (0.6, 0.2, false)] {
+            let light = |share: f32| {
+                let mut march = March::slab(THICKNESS_M, tau / THICKNESS_M, sloped(mu, up));
+                march.scene.step_m = 5.0 / tau.clamp(0.5, 5.0);
+                march.scene.towards_light = sloped(mu0, true);
+                march.scene.light_illuminance = Vec3::splat(4.0 * std::f32::consts::PI);
+                march.scene.light_share = share;
+                f64::from(march.run().rgba[0][0])
+            };
+            let (each, together) = (light(0.0), light(0.33));
+            // Eight steps at most are lit as one: where cloud is thin, light hardly changes over them.
+            let allowed = if tau < 0.5 { 0.005 } else { 0.05 };
+            assert!(each > 0.0, "tau {tau}: there is light");
+            assert!((together / each - 1.0).abs() < allowed, "tau {tau}, mu {mu}, mu0 {mu0}: {together} for {each}");
+        }
+    }
+}
