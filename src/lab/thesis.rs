@@ -117,6 +117,7 @@ fn quality(settings: Settings) -> Quality {
             step_growth: 0.018,
             step_depth: 2.5,
             empty_stride: 2.0,
+            // The thesis has no map of where the air is clear.
             skip_clear: false,
             light_steps: 6,
             light_reach_m: 1500.0,

@@ -6,7 +6,9 @@ use nephoscope::gpu::{Program, ProgramKey, Texture, job, readback};
 use nephoscope::render::uniforms::other::{MapUniforms, ReliefUniforms};
 use nephoscope::render::uniforms::scene::BandUniforms;
 
-use super::{gpu, programs};
+use wgpu::util::DeviceExt as _;
+
+use super::{Case, gpu, programs};
 
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
@@ -158,4 +160,19 @@ fn write(texture: &Texture, bytes: &[u8], texel: u32) {
 /// The texels of level 0.
 pub(crate) fn read(texture: &Texture) -> Vec<[f32; 4]> {
     readback::rgba(gpu(), texture).expect("it can be read")
+}
+
+/// What a program of `shaders/test` makes of its cases, with what it reads besides.
+pub(crate) fn evaluated(key: &ProgramKey, read: &Bound<'_>, cases: &[Case]) -> Vec<[f32; 4]> {
+    let storage = |contents: &[u8], usage| {
+        gpu().device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("cases"), contents, usage })
+    };
+    let input = storage(bytemuck::cast_slice(cases), wgpu::BufferUsages::STORAGE);
+    let results = vec![0_u8; cases.len() * 16];
+    let output = storage(&results, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
+    let mut bound = read.clone();
+    bound.extend([("cases", input.as_entire_binding()), ("results", output.as_entire_binding())]);
+    run(key, &bound, [512, u32::try_from(cases.len().div_ceil(512)).expect("few cases"), 1]);
+    let bytes = readback::buffer(gpu(), &output).expect("the results can be read");
+    bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned).collect()
 }

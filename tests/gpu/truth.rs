@@ -3,11 +3,10 @@
 use glam::{Vec3, Vec4};
 use nephoscope::gpu::ProgramKey;
 
-use crate::common::field::{Field, linear_repeat, run, view_of};
+use crate::common::field::{Field, evaluated, linear_repeat, view_of};
 use crate::common::slab::{FLAT, March, PROFILE, THESIS, UNIFORM, noisy_layer, slab_light};
 use crate::common::truth::{Mean, baked_bounds, blind_bounds, bounds_of, named};
 use crate::common::{Case, Random, bits3, gpu};
-use wgpu::util::DeviceExt as _;
 
 const THICKNESS_M: f32 = 1000.0;
 const ISOTROPIC: f64 = 1.0 / (4.0 * std::f64::consts::PI);
@@ -238,27 +237,17 @@ fn no_density_within_reach_exceeds_its_majorant() {
 
 /// Results of `test/eval_majorant.wgsl` over the baked field.
 fn majorants(march: &March, cases: &[Case]) -> Vec<[f32; 4]> {
-    let storage = |contents: &[u8], usage| {
-        gpu().device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some("cases"), contents, usage })
-    };
-    let input = storage(bytemuck::cast_slice(cases), wgpu::BufferUsages::STORAGE);
-    let results = vec![0_u8; cases.len() * 16];
-    let output = storage(&results, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let scene = gpu().uniform("scene", bytemuck::bytes_of(&march.scene));
-    let mut bound = vec![
-        ("cases", input.as_entire_binding()),
-        ("results", output.as_entire_binding()),
+    let mut read = vec![
         ("scene", scene.as_entire_binding()),
         ("weather_map", view_of(&Field::baked().map)),
         ("linear_repeat", wgpu::BindingResource::Sampler(linear_repeat())),
     ];
-    bound.extend(Field::baked().noises());
-    bound.extend(named(baked_bounds()));
+    read.extend(Field::baked().noises());
+    read.extend(named(baked_bounds()));
     let key = ProgramKey::plain("test/eval_majorant.wgsl")
         .with_flags(["PROFILE", "THESIS", "UNIFORM", "DETAIL", "CURL"])
         .with_constant("DOMAIN", FLAT)
         .with_constant("LAYERS", 1);
-    run(&key, &bound, [512, u32::try_from(cases.len().div_ceil(512)).expect("few cases"), 1]);
-    let bytes = nephoscope::gpu::readback::buffer(gpu(), &output).expect("the results can be read");
-    bytes.chunks_exact(16).map(bytemuck::pod_read_unaligned).collect()
+    evaluated(&key, &read, cases)
 }
