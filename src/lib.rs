@@ -11,8 +11,8 @@
 //!
 //! let (scene, quality) = (Scene::default(), Quality::default());
 //! let frame = Frame { scene: &scene, quality: &quality, size: [960, 540], time_secs: 0.0, output: Output::Display };
-//! for reason in FramePlan::new(&frame).reasons {
-//!     println!("{}: {} because {}", reason.effect, if reason.runs { "yes" } else { "no" }, reason.because);
+//! for verdict in FramePlan::new(&frame).verdicts {
+//!     println!("{}: {} because {}", verdict.effect.info().name, if verdict.runs { "yes" } else { "no" }, verdict.because);
 //! }
 //! ```
 //!

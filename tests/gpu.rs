@@ -3,9 +3,9 @@
 mod common;
 
 mod gpu {
-    mod absent;
     mod clearance;
     mod density;
+    mod effects;
     mod frames;
     mod grid;
     mod lab;
@@ -15,6 +15,7 @@ mod gpu {
     mod phase_sample;
     mod physics;
     mod random;
+    mod rows;
     mod shaders;
     mod shell;
     mod stills;

@@ -65,22 +65,32 @@ fn rayleigh(view_dir: vec3f, towards_sun: vec3f) -> f32 {
 fn phase_scaled(shape: PhaseShape, anisotropy_scale: f32, view_dir: vec3f, towards_sun: vec3f) -> f32 {
   let g = shape.g * anisotropy_scale;
   switch (shape.kind) {
+#if PHASE_ONE_LOBE
     case PHASE_HENYEY_GREENSTEIN: {
       return henyey_greenstein(g, view_dir, towards_sun);
     }
+#endif
+#if PHASE_TWO_LOBES
     case PHASE_TWO_LOBES: {
       let back = henyey_greenstein(shape.back_g * anisotropy_scale, view_dir, towards_sun);
       return mix(henyey_greenstein(g, view_dir, towards_sun), back, shape.back_mix);
     }
+#endif
+#if PHASE_CORNETTE_SHANKS
     case PHASE_CORNETTE_SHANKS: {
       return cornette_shanks(g, view_dir, towards_sun);
     }
+#endif
+#if PHASE_SCHLICK
     case PHASE_SCHLICK: {
       return schlick(g, view_dir, towards_sun);
     }
+#endif
+#if PHASE_RAYLEIGH
     case PHASE_RAYLEIGH: {
       return rayleigh(view_dir, towards_sun);
     }
+#endif
     default: {
       return 1.0 / (4.0 * PI);
     }

@@ -61,22 +61,32 @@ fn sample_phase(shape: PhaseShape, view_dir: vec3f, seed: vec3u) -> vec3f {
   let u = unit_from_bits(bits.x);
   var cosine: f32;
   switch (shape.kind) {
+#if PHASE_ONE_LOBE
     case PHASE_HENYEY_GREENSTEIN: {
       cosine = henyey_greenstein_cosine(shape.g, u);
     }
+#endif
+#if PHASE_TWO_LOBES
     case PHASE_TWO_LOBES: {
       let back = unit_from_bits(bits.z) < shape.back_mix;
       cosine = henyey_greenstein_cosine(select(shape.g, shape.back_g, back), u);
     }
+#endif
+#if PHASE_CORNETTE_SHANKS
     case PHASE_CORNETTE_SHANKS: {
       cosine = cornette_shanks_cosine(shape.g, seed + vec3u(0u, 0x85ebca6bu, 0u));
     }
+#endif
+#if PHASE_SCHLICK
     case PHASE_SCHLICK: {
       cosine = schlick_cosine(shape.g, u);
     }
+#endif
+#if PHASE_RAYLEIGH
     case PHASE_RAYLEIGH: {
       cosine = rayleigh_cosine(u);
     }
+#endif
     default: {
       cosine = 2.0 * u - 1.0;
     }

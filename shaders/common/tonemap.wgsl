@@ -14,9 +14,13 @@ fn srgb_decoded(encoded: vec3f) -> vec3f {
 
 // Contrast round middle grey and saturation, on light.
 fn graded(light: vec3f, contrast: f32, saturation: f32) -> vec3f {
+#if GRADED
   let c = 0.18 * pow(max(light, vec3f(1e-8)) / 0.18, vec3f(contrast));
   let grey = luminance709(c);
   return max(mix(vec3f(grey), c, saturation), vec3f(0.0));
+#else
+  return max(light, vec3f(0.0));
+#endif
 }
 
 // Khronos PBR Neutral (ToneMapping specification 1.0): hue kept, highlights compressed from 0.8 on.
@@ -51,7 +55,11 @@ fn agx(light: vec3f, contrast: f32, saturation: f32) -> vec3f {
   let x2 = stops * stops;
   let x4 = x2 * x2;
   let curve = 15.5 * x4 * x2 - 40.14 * x4 * stops + 31.96 * x4 - 6.868 * x2 * stops + 0.4298 * x2 + 0.1191 * stops - 0.00232;
+#if GRADED
   let powered = pow(max(curve, vec3f(1e-8)), vec3f(contrast));
   let saturated = mix(vec3f(luminance709(powered)), powered, saturation);
+#else
+  let saturated = max(curve, vec3f(1e-8));
+#endif
   return clamp(outset * saturated, vec3f(0.0), vec3f(1.0));
 }

@@ -84,18 +84,20 @@ fn air_step(
   place.medium = air_sample(air, altitude);
   place.altitude_m = altitude;
   var source = vec3f(0.0);
-  if any(air.sun_illuminance > vec3f(0.0)) {
+  {
     let cosine = clamp(dot(ray.dir, air.towards_sun), -1.0, 1.0);
     place.cos_zenith = (start_radius * air.towards_sun.y + middle * cosine) / radius;
     place.phases = vec2f(rayleigh_phase(cosine), aerosol_phase(air, cosine));
     source += air.sun_illuminance * scattered(transmittance_lut, multiscatter_lut, samp, air, place);
   }
-  if any(air.moon_illuminance > vec3f(0.0)) {
+#if MOONLIT
+  {
     let cosine = clamp(dot(ray.dir, air.towards_moon), -1.0, 1.0);
     place.cos_zenith = (start_radius * air.towards_moon.y + middle * cosine) / radius;
     place.phases = vec2f(rayleigh_phase(cosine), aerosol_phase(air, cosine));
     source += air.moon_illuminance * scattered(transmittance_lut, multiscatter_lut, samp, air, place);
   }
+#endif
   let length_m = span.y - span.x;
   let depth = place.medium.extinction * length_m;
   var result: Aerial;

@@ -44,11 +44,18 @@ fn sky_with_lights(dir: vec3f) -> vec3f {
   let altitude = max(view.camera.eye.y, 0.0);
   var light = sky_radiance(sky_view, linear_repeat, air, dir);
   // The discs are small: most directions need not look closer.
-  if (max(dot(dir, air.towards_sun) - cos(air.sun_angular_radius + DISC_MARGIN),
-      dot(dir, air.towards_moon) - cos(air.moon_angular_radius + DISC_MARGIN)) > 0.0) {
-    let discs = sun_disc(air, dir, view.sample_angle) + moon_disc(air, dir, view.sample_angle);
-    light += discs * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
+#if SUN_DISC
+  if (dot(dir, air.towards_sun) > cos(air.sun_angular_radius + DISC_MARGIN)) {
+    let disc = sun_disc(air, dir, view.sample_angle);
+    light += disc * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
   }
+#endif
+#if MOON_DISC
+  if (dot(dir, air.towards_moon) > cos(air.moon_angular_radius + DISC_MARGIN)) {
+    let disc = moon_disc(air, dir, view.sample_angle);
+    light += disc * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
+  }
+#endif
 #if STARS
   light += stars(dir) * air_transmittance(sky_transmittance, linear_repeat, air, altitude, dir.y);
 #endif
@@ -131,7 +138,7 @@ fn ground_hit(origin: vec3f, dir: vec3f) -> f32 {
   let flat = max(length(dir.xz), 1e-4);
   let plain_until = max(PLAIN_M - length(ground.plain_at), 0.0) / flat;
   var relief = -1.0;
-  if (ceiling.y > 0.0 && !(is_down && sea_distance < plain_until)) {
+  if (ground.highest_m > 0.0 && ceiling.y > 0.0 && !(is_down && sea_distance < plain_until)) {
     relief = relief_hit(origin, dir, max(start, plain_until), end, is_down && end == sea_distance);
   }
   return select(sea_distance, relief, relief >= 0.0);
@@ -141,15 +148,15 @@ fn ground_hit(origin: vec3f, dir: vec3f) -> f32 {
 }
 
 fn ground_normal(p: vec3f, distance_m: f32) -> vec3f {
+  var normal = up_at(p, ground.planet_radius_m);
 #if TERRAIN
   let e = max(20.0, distance_m * 0.004);
   let here = ground_height(p.xz, distance_m);
   let east = ground_height(p.xz + vec2f(e, 0.0), distance_m) - here;
   let south = ground_height(p.xz + vec2f(0.0, e), distance_m) - here;
-  return normalize(vec3f(-east, e, -south));
-#else
-  return up_at(p, ground.planet_radius_m);
+  normal -= vec3f(east, 0.0, south) / e;
 #endif
+  return normalize(normal);
 }
 
 // Rock where it is steep or high.
@@ -181,7 +188,7 @@ fn ground_light(p: vec3f, dir: vec3f, distance_m: f32) -> vec3f {
   var wet = 0.5;
 #if TERRAIN
   let uv = p.xz * ground.tile_from_world.z + ground.tile_from_world.xy;
-  wet = textureSampleLevel(terrain_map, linear_repeat, uv, 0.0).z;
+  wet = select(wet, textureSampleLevel(terrain_map, linear_repeat, uv, 0.0).z, ground.highest_m > 0.0);
 #endif
   let footprint = distance_m * view.sample_angle / max(-dot(flat_normal, dir), 0.01);
   let cover = ground_cover(place, footprint, wet);
@@ -216,7 +223,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   var eye = view.camera.eye;
 #if TERRAIN
   // An eye inside a hill sees from above it.
-  eye.y = max(eye.y, ground_height(vec2f(0.0), 0.0) + 2.0);
+  eye.y = select(eye.y, max(eye.y, ground_height(vec2f(0.0), 0.0) + 2.0), ground.highest_m > 0.0);
 #endif
   let hit = ground_hit(eye, dir);
   var light: vec3f;

@@ -96,9 +96,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let densities = densities_at(p, Reading(0.0, true, 0.0, false));
     let extinction = extinction_of(densities);
     if (extinction > 0.0) {
-      light_steps += truth.light_steps;
       let altitude = altitude_of(p);
+#if LIT
+      light_steps += truth.light_steps;
       var source = source_of(key_light_at(p, altitude), converged_sun_depth(p), altitude, densities);
+#else
+      var source = source_of(vec3f(0.0), 0.0, altitude, densities);
+#endif
 #if AIR
       let ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, middle);
       source = ahead.transmittance * source + ahead.light;

@@ -19,7 +19,9 @@
 #else
 @group(2) @binding(0) var cloud_out: texture_storage_2d<rgba16float, write>;
 #endif
+#if DISTANCE
 @group(2) @binding(1) var distance_out: texture_storage_2d<r32float, write>;
+#endif
 #if COUNT
 @group(2) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;
 #endif
@@ -47,6 +49,7 @@ fn air_before(dir: vec3f, distance_m: f32) -> Aerial {
 }
 #endif
 
+#if LIT
 // The key light's irradiance at a place, cloud left out; read again when the place has moved far enough up or along.
 var<private> key_light: vec3f;
 var<private> key_light_altitude: f32;
@@ -61,6 +64,7 @@ fn key_light_near(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
   }
   return key_light;
 }
+#endif
 
 // Longest step at which noise is read at its finest level, in metres.
 const FINEST_STEP_M: f32 = 250.0;
@@ -122,8 +126,12 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
     let t = waiting_distance[k];
     let p = origin + dir * t;
     let altitude = altitude_of(p);
+#if LIT
     let depth = sun_optical_depth(p, noise_level(t));
     let source = source_of(key_light_near(p, altitude, t), depth, altitude, waiting_densities[k]);
+#else
+    let source = source_of(vec3f(0.0), 0.0, altitude, waiting_densities[k]);
+#endif
 #if AIR
     let ahead = air_before(dir, t);
     light += waiting_share[k] * (ahead.transmittance * source + ahead.light);
@@ -247,7 +255,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let noise = textureLoad(blue_noise, pixel % textureDimensions(blue_noise), 0).x;
     let jitter = fract(noise * view.jitter.x + view.jitter.y);
     steps_left = scene.view_steps;
+#if LIT
     key_light_altitude = -1e9;
+#endif
     let first = vec2f(segments.first.x, min(segments.first.y, limit));
     seen = march_segment(seen, origin, dir, first, jitter);
     let second = vec2f(segments.second.x, min(segments.second.y, limit));
@@ -258,9 +268,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   }
   let opened = after_early_exit(seen.transmittance, scene.early_exit);
   let transmittance = opened.x;
-  let mean_distance = select(0.0, seen.distance_sum / max(seen.weight_sum, 1e-6), seen.weight_sum > 0.0);
   textureStore(cloud_out, ray, sanitise4(vec4f(seen.light * opened.y, transmittance)));
+#if DISTANCE
+  let mean_distance = select(0.0, seen.distance_sum / max(seen.weight_sum, 1e-6), seen.weight_sum > 0.0);
   textureStore(distance_out, ray, vec4f(mean_distance, 0.0, 0.0, 0.0));
+#endif
 #if COUNT
   atomicAdd(&counters[0], 1u);
   atomicAdd(&counters[2], counted_light_steps);

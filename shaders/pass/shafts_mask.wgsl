@@ -4,7 +4,9 @@
 #import "generated/ViewUniforms.wgsl"
 
 @group(0) @binding(0) var<uniform> view: ViewUniforms;
+#if CLOUDS
 @group(1) @binding(0) var cloud: texture_2d<f32>;
+#endif
 #if GROUND
 @group(1) @binding(1) var ground_distance: texture_2d<f32>;
 #endif
@@ -22,7 +24,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   for (var i = 0u; i < 4u; i++) {
     let offset = (vec2f(f32(i & 1u), f32(i >> 1u)) + 0.5) * 0.5;
     let pixel = min(vec2u((vec2f(id.xy) + offset) * scale), view.size - vec2u(1u));
-    var open = textureLoad(cloud, pixel, 0).a;
+    var open = 1.0;
+#if CLOUDS
+    open = textureLoad(cloud, pixel, 0).a;
+#endif
 #if GROUND
     open = select(open, 0.0, textureLoad(ground_distance, pixel, 0).x >= 0.0);
 #endif

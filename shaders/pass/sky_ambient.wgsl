@@ -26,7 +26,9 @@ fn seen_from(altitude_m: f32, dir: vec3f, ground: vec3f) -> vec3f {
   }
   var lit = ground;
   lit += lit_by(air.sun_illuminance, air.towards_sun, ray);
+#if MOONLIT
   lit += lit_by(air.moon_illuminance, air.towards_moon, ray);
+#endif
   return seen.light + seen.transmittance * air.ground_albedo * lit;
 }
 

@@ -27,7 +27,9 @@
 #else
 @group(2) @binding(0) var cloud_out: texture_storage_2d<rgba16float, write>;
 #endif
+#if DISTANCE
 @group(2) @binding(1) var distance_out: texture_storage_2d<r32float, write>;
+#endif
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -59,5 +61,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 #else
   textureStore(cloud_out, pixel, sanitise4(vec4f(light, 1.0 - opacity)));
 #endif
+#if DISTANCE
   textureStore(distance_out, pixel, vec4f(distance_m, 0.0, 0.0, 0.0));
+#endif
 }

@@ -109,7 +109,7 @@ pub enum Order {
         rounds: u32,
     },
     /// A fixed set.
-    Suite(SuiteKind, Rounds),
+    Suite(SuiteKind, Rounds, Box<Quality>),
 }
 
 /// What to do with unsaved changes.

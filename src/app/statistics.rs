@@ -90,7 +90,7 @@ impl Statistics {
             frames: self.totals.0.len(),
             pictures_per_sec: self.rate(),
             panel_p95_ms: self.panels.quantile(0.95),
-            reasons: self.last.as_ref().map(|report| report.plan.reasons.clone()).unwrap_or_default(),
+            verdicts: self.last.as_ref().map(|report| report.plan.verdicts.clone()).unwrap_or_default(),
             ..Readout::default()
         }
     }

@@ -7,7 +7,7 @@ use super::lab::Governor;
 use super::statistics::Statistics;
 use super::truth::{CompareJob, Outcome, Truths, Wishes};
 use crate::gpu::Gpu;
-use crate::plan::FramePlan;
+use crate::plan::{Forced, FramePlan};
 use crate::render::{Progress, RenderError, Renderer};
 use crate::scene::{Frame, Output, Quality, Scene, UpdateFraction};
 use crate::ui::{LabState, Readout};
@@ -28,11 +28,12 @@ pub(super) struct Inputs {
     pub(super) quality: Quality,
     pub(super) size: [u32; 2],
     pub(super) time_secs: f64,
+    pub(super) forced: Forced,
 }
 
 impl Inputs {
     fn frame(&self) -> Frame<'_> {
-        let Self { scene, quality, size, time_secs } = self;
+        let Self { scene, quality, size, time_secs, .. } = self;
         Frame { scene, quality, size: *size, time_secs: *time_secs, output: Output::Display }
     }
 }
@@ -104,12 +105,13 @@ impl Viewport {
     }
 
     /// Begins a frame if one is due, and sends the next slice of work.
-    pub(super) fn step(&mut self, document: &Document, size: [u32; 2]) -> Result<Step, RenderError> {
+    pub(super) fn step(&mut self, document: &Document, size: [u32; 2], forced: Forced) -> Result<Step, RenderError> {
         let own = Inputs {
             scene: document.preset().scene.clone(),
             quality: document.quality().clone(),
             size,
             time_secs: document.time_secs(),
+            forced,
         };
         // What is shown at rest and what is compared has the document's own quality.
         self.has_moved_on |= self.truths.follow(&own, Instant::now());
@@ -146,6 +148,7 @@ impl Viewport {
             Some(since) => changed && since.elapsed() > PATIENCE && kept_still > SETTLED,
         };
         if due {
+            self.renderer.force(inputs.forced);
             self.renderer.begin(&inputs.frame())?;
             self.begun = Some(inputs.clone());
             self.since = Some(Instant::now());
@@ -176,7 +179,7 @@ impl Viewport {
                 self.compiling = false;
                 self.since = None;
                 // A picture drawn as the one before was planned, while its own shaders compile, does not count.
-                let planned = report.plan == FramePlan::new(&inputs.frame());
+                let planned = report.plan == FramePlan::forced(&inputs.frame(), inputs.forced);
                 self.left = if planned { self.left.saturating_sub(1) } else { self.left.max(1) };
                 self.refused = None;
                 if let Some(budget_ms) = self.budget_ms.filter(|_| planned) {

@@ -255,7 +255,7 @@ impl App {
         let mut fastest = FASTEST_PANELS;
         if self.session.ui.viewport.rect.width() >= 1.0 && self.session.ui.viewport.rect.height() >= 1.0 {
             self.session.ui.lab.view.governor = live.viewport.govern(&self.session.ui.lab);
-            match live.viewport.step(&self.session.document, size) {
+            match live.viewport.step(&self.session.document, size, self.session.ui.forced) {
                 Ok(Step::Idle) => is_idle = true,
                 Ok(Step::Busy) => {
                     fastest = FASTEST_PANELS_BESIDE_WORK;

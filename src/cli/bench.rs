@@ -18,6 +18,7 @@ use crate::lab::bench::{Case, Rounds, count_table, measure, pass_table, ratio_ta
 use crate::lab::flight;
 use crate::lab::suite::{Suite, SuiteKind};
 use crate::lab::table::{Cell, Table};
+use crate::plan::Forced;
 use crate::render::Renderer;
 use crate::scene::builtin::BUILTINS;
 use crate::scene::edit;
@@ -66,6 +67,8 @@ enum SuiteArg {
     Thesis,
     /// The sweeps of Costa 2023: eye steps, light steps, grid sizes, resolutions. Takes an hour on a processor.
     Costa,
+    /// What each effect of the skies costs and changes, with it and without it.
+    Effects,
 }
 
 impl SuiteArg {
@@ -73,6 +76,7 @@ impl SuiteArg {
         match self {
             Self::Thesis => SuiteKind::Thesis,
             Self::Costa => SuiteKind::Costa,
+            Self::Effects => SuiteKind::Effects,
         }
     }
 }
@@ -92,13 +96,14 @@ pub(super) struct Form {
 }
 
 pub(super) fn run(args: &BenchArgs) -> Result<()> {
-    let cases = if args.suite.is_none() { cases(args)? } else { Vec::new() };
+    let takes_skies = matches!(args.suite, None | Some(SuiteArg::Effects));
+    let cases = if takes_skies { cases(args)? } else { Vec::new() };
     let gpu = Gpu::headless(&args.device.choice())?;
     let mut renderer = Renderer::new(&gpu)?;
     print_machine(args.form, &gpu)?;
     let source = TimingSource::of(&gpu);
     match (args.suite, args.flight) {
-        (Some(suite), _) => run_suite(args, &mut renderer, (suite.kind(), source)),
+        (Some(suite), _) => run_suite(args, &mut renderer, (suite.kind(), &cases, source)),
         (None, true) => {
             let Some(case) = cases.first() else { return Ok(()) };
             let flight = flight::fly(&mut renderer, case, args.frames.saturating_mul(20))?;
@@ -127,7 +132,7 @@ fn cases(args: &BenchArgs) -> Result<Vec<Case>> {
             edit::apply(&args.edits.sets, &mut scene, &mut quality)?;
             for size in &args.size {
                 let (scene, quality) = (scene.clone(), quality.clone());
-                cases.push(Case { name: title(&sky), scene, quality, size: *size });
+                cases.push(Case { name: title(&sky), scene, quality, size: *size, forced: Forced::default() });
             }
         }
     }
@@ -162,11 +167,15 @@ fn per_pass(args: &BenchArgs, renderer: &mut Renderer, cases: &[Case]) -> Result
 }
 
 /// Measures a suite until its end or until Ctrl-C.
-fn run_suite(args: &BenchArgs, renderer: &mut Renderer, (kind, source): (SuiteKind, TimingSource)) -> Result<()> {
+fn run_suite(
+    args: &BenchArgs,
+    renderer: &mut Renderer,
+    (kind, skies, source): (SuiteKind, &[Case], TimingSource),
+) -> Result<()> {
     interrupt::watch();
     let folder = tempfile::tempdir()?;
     let textures = write_textures(folder.path())?;
-    let mut suite = Suite::new(kind, rounds(args), &textures);
+    let mut suite = Suite::new(kind, rounds(args), &textures, skies);
     while let Some(turn) = suite.next_turn() {
         if interrupt::is_asked() {
             break;
@@ -189,7 +198,8 @@ fn run_suite(args: &BenchArgs, renderer: &mut Renderer, (kind, source): (SuiteKi
     if suite.next_turn().is_some() {
         return Err(Interrupted("what was measured so far is above".to_owned()).into());
     }
-    for cases in suite.cases() {
+    // Effects are counted in their own table.
+    for cases in suite.cases().filter(|_| kind != SuiteKind::Effects) {
         let counts = count_table(renderer, cases)?;
         if !counts.rows.is_empty() {
             print_table(args.form, &counts)?;

@@ -9,6 +9,7 @@ use super::error::Usage;
 use super::{Device, Edits, args, print};
 use crate::files::{self, VoxelFormat, save_grid};
 use crate::gpu::Gpu;
+use crate::plan::{Effect, FramePlan};
 use crate::render::Renderer;
 use crate::scene::{DomainKind, Frame, Output, Quality, edit};
 
@@ -82,8 +83,7 @@ pub(super) fn run(args: &GridArgs) -> Result<()> {
 
 /// Why a frame's clouds are not baked.
 fn no_cloud(frame: &Frame<'_>) -> String {
-    let plan = crate::plan::FramePlan::new(frame);
-    let reason =
-        plan.reasons.into_iter().find(|reason| matches!(reason.effect, "clouds" | "baked voxels") && !reason.runs);
-    reason.map_or_else(|| "its layers are empty".to_owned(), |reason| reason.because)
+    let plan = FramePlan::of_clouds(frame);
+    let verdict = [Effect::Clouds, Effect::Baked].map(|effect| plan.verdict(effect)).into_iter().find(|v| !v.runs);
+    verdict.map_or_else(|| "its layers are empty".to_owned(), |verdict| verdict.because.clone())
 }

@@ -2,6 +2,7 @@
 
 use super::table::{Cell, Table};
 use crate::gpu::TimingSource;
+use crate::plan::Forced;
 use crate::render::{Counts, FrameReport, RenderError, Renderer};
 use crate::scene::{Frame, Output, Quality, Scene};
 
@@ -16,6 +17,8 @@ pub struct Case {
     pub quality: Quality,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Effects that run, or do not, whatever the sky calls for.
+    pub forced: Forced,
 }
 
 impl Case {
@@ -155,6 +158,7 @@ impl Measurement {
         let mut time_secs = f64::from(round);
         let is_enough = row.is_slow() && row.total.len() >= (SLOW_ROUNDS * self.rounds.frames) as usize;
         if !is_enough {
+            renderer.force(case.forced);
             let first = renderer.render(&case.frame(time_secs))?;
             if counts {
                 add_passes(&mut row.on_change, &first);
@@ -294,6 +298,7 @@ pub fn count_table(renderer: &mut Renderer, cases: &[Case]) -> Result<Table, Ren
     let columns = ["sky", "size", "rays", "view steps / ray", "light steps / ray", "texture reads / ray"];
     let mut table = Table::new("Counted work of one frame", &columns);
     for case in cases {
+        renderer.force(case.forced);
         let Counts { rays, view_steps, light_steps, texture_reads } = renderer.counted_reads(&case.frame(0.0))?;
         let per_ray = |count: u64| Cell::Number((rays > 0).then(|| count as f64 / rays as f64), 1);
         if rays > 0 {
@@ -342,7 +347,8 @@ mod tests {
         row.add(&report(&[("march", 4.0), ("tonemap", 1.0)], 5.0));
         add_passes(&mut row.on_change, &report(&[("bake_shape", 9.0)], 9.0));
         assert_eq!((row.median("march"), row.median("temporal")), (Some(3.0), None));
-        let case = Case { name: "a".to_owned(), scene: Scene::default(), quality: Quality::default(), size: [64, 36] };
+        let (name, forced) = ("a".to_owned(), Forced::default());
+        let case = Case { name, scene: Scene::default(), quality: Quality::default(), size: [64, 36], forced };
         let table = pass_table(&[case], &[row], TimingSource::SerialisedHost);
         assert!(table.title.contains("serialised host time"), "{}", table.title);
         assert_eq!(table.rows.len(), 4);

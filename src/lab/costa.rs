@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use super::bench::{Case, Row, Stats};
 use super::plot::{Plot, Series};
 use super::table::{Cell, Table};
+use crate::plan::Forced;
 use crate::scene::param::FileName;
 use crate::scene::{
     Camera, CloudLayer, DensityModel, Domain, DomainKind, MapEdge, MapLayer, MapSource, Phase, PhaseKind, Quality,
@@ -203,6 +204,7 @@ pub fn cases(sweep: Sweep, textures: &[PathBuf; 2]) -> Vec<Case> {
         scene: scene(&textures[step.texture]),
         quality: quality(step),
         size: step.size,
+        forced: Forced::default(),
     };
     sweep.steps().into_iter().map(case).collect()
 }

@@ -6,6 +6,7 @@ pub mod bench;
 pub mod colormap;
 mod colour;
 pub mod costa;
+pub mod effects;
 pub mod flight;
 pub mod flip;
 pub mod metrics;

@@ -6,6 +6,7 @@
 
 use super::bench::{Case, Row};
 use super::table::{Cell, Table};
+use crate::plan::Forced;
 use crate::scene::{
     CloudLayer, DensityModel, MapLayer, Phase, PhaseKind, Projection, Quality, QualityLevel, Scene, UpdateFraction,
 };
@@ -73,7 +74,13 @@ pub fn cases(settings: Settings) -> Vec<Case> {
         .iter()
         .map(|row| {
             let (scene, quality) = (scene(settings, row), quality(settings));
-            Case { name: format!("{} {}", row.cloud, row.coverage), scene, quality, size: SIZE }
+            Case {
+                name: format!("{} {}", row.cloud, row.coverage),
+                scene,
+                quality,
+                size: SIZE,
+                forced: Forced::default(),
+            }
         })
         .collect()
 }

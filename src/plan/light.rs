@@ -38,6 +38,8 @@ pub struct Lighting {
     pub sun_lux: Vec3,
     /// Illuminance of the moon above the air in lux, coloured; zero without a moon.
     pub moon_lux: Vec3,
+    /// Illuminance of the sun as it is left after sunset, in lux.
+    pub daylight_lux: f32,
     /// One working unit in cd/m²: chosen so that half floats hold the picture, day and night.
     pub candela_per_unit: f32,
 }
@@ -72,7 +74,18 @@ impl Lighting {
         let daylight = f64::from(sun_lux.dot(LUMINANCE)) * 10f64.powf(-0.75 * below_deg);
         let night = f64::from(moon_lux.dot(LUMINANCE)) + 1e-3;
         let candela_per_unit = ((daylight + night) / 16.0) as f32;
-        Self { key, towards_key, key_lux, towards_sun, towards_moon, sun_lux, moon_lux, candela_per_unit }
+        let daylight_lux = daylight as f32;
+        Self { key, towards_key, key_lux, towards_sun, towards_moon, sun_lux, moon_lux, daylight_lux, candela_per_unit }
+    }
+
+    /// How much of the stars twilight leaves: none until the sun is 7° below the horizon.
+    pub fn star_share(&self) -> f32 {
+        smoothstep(0.12, 0.18, -self.towards_sun.y)
+    }
+
+    /// How much of its streaks a light at the horizon still draws: none from 1° below it.
+    pub fn streak_share(&self) -> f32 {
+        if self.key == KeyLight::None { 0.0 } else { smoothstep(-0.02, 0.02, self.towards_key.y) }
     }
 
     /// A sun that shines from wherever it is told, in units of its own: pictures hold them as they are.
@@ -88,9 +101,15 @@ impl Lighting {
             towards_moon: Vec3::NEG_Y,
             sun_lux: irradiance,
             moon_lux: Vec3::ZERO,
+            daylight_lux: irradiance.max_element(),
             candela_per_unit: 1.0,
         }
     }
+}
+
+fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
 }
 
 #[cfg(test)]
@@ -125,6 +144,18 @@ mod tests {
         assert_eq!((lighting.candela_per_unit, lighting.moon_lux), (1.0, Vec3::ZERO));
         scene.plain_light.sun_irradiance = 0.0;
         assert_eq!(Lighting::new(&scene).key, KeyLight::None);
+    }
+
+    #[test]
+    fn stars_and_streaks_come_and_go_without_a_jump() {
+        assert_eq!((at(10.0).star_share(), at(-6.0).star_share(), at(-12.0).star_share()), (0.0, 0.0, 1.0));
+        assert_eq!((at(10.0).streak_share(), at(-1.2).streak_share()), (1.0, 0.0));
+        for step in 0..400 {
+            let (now, then) = (at(2.0 - step as f32 * 0.05), at(1.95 - step as f32 * 0.05));
+            assert!((now.star_share() - then.star_share()).abs() < 0.03, "{step}");
+            let moon_takes_over = now.key != then.key;
+            assert!(moon_takes_over || (now.streak_share() - then.streak_share()).abs() < 0.05, "{step}");
+        }
     }
 
     #[test]

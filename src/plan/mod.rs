@@ -1,21 +1,28 @@
 //! Decides what one frame needs. No GPU here, so every rule has a plain test.
 //!
-//! `None` and `false` mean: not compiled, not bound, not allocated, not dispatched. Every entry says why in words.
+//! `None` and `false` mean: not compiled, not bound, not allocated, not dispatched. What there is to decide is the closed
+//! list of [`Effect`]s; every frame has a [`Verdict`] on each of them, in words.
 
+mod decide;
+mod effect;
 mod history;
-mod horizon;
 mod light;
-mod reasons;
+mod lights;
+mod rows;
 mod variant;
+mod view;
 
+pub use decide::{Need, Verdict};
+pub use effect::{Effect, EffectInfo, Forced};
 pub use history::{HistoryKey, UpdatePattern};
 pub use light::{KeyLight, Lighting};
-pub use reasons::Reason;
-pub use variant::MarchVariant;
+pub use variant::{MarchVariant, Phases};
+
+use std::ops::Range;
 
 use crate::choices;
-use crate::scene::{Frame, Output, Projection, Scene, ToneMap, UpdateFraction};
-use reasons::Reasons;
+use crate::scene::{Frame, Output, Quality, ToneMap, UpdateFraction};
+use decide::Verdicts;
 
 choices! {
     /// How the light of clouds is found. All three read the same density and the same phase functions.
@@ -40,19 +47,36 @@ pub struct GroundPlan {
     pub open_rows: u32,
 }
 
+/// What of the sky is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SkyPlan {
+    /// The table of the air before every distance.
+    pub air: bool,
+    /// The table of mean radiances.
+    pub light: bool,
+    /// Whether the air scatters moonlight.
+    pub moonlit: bool,
+    /// The sun's disc.
+    pub sun_disc: bool,
+    /// The moon's disc.
+    pub moon_disc: bool,
+    /// Stars.
+    pub stars: bool,
+}
+
 /// Everything one frame does, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
     /// The light that is marched towards.
     pub key: KeyLight,
-    /// Whether light comes from a plain sun and sky, with no air and no ground.
-    pub plain: bool,
-    /// Whether stars are drawn.
-    pub stars: bool,
+    /// The sky, unless light comes from a plain sun and sky without air and ground.
+    pub sky: Option<SkyPlan>,
     /// The ground, where any can be seen.
     pub ground: Option<GroundPlan>,
-    /// The cloud march, where any cloud can be seen.
+    /// How the clouds are read, where the view or a shadow map needs them.
     pub march: Option<MarchVariant>,
+    /// Rows of the picture that are marched; none where no cloud can be in view.
+    pub cloud_rows: Range<u32>,
     /// Which pixels are computed, where not all are.
     pub temporal: Option<UpdatePattern>,
     /// Samples along streaks of light.
@@ -63,180 +87,148 @@ pub struct FramePlan {
     pub alone: bool,
     /// How light becomes display colour.
     pub tone_map: ToneMap,
+    /// Whether the display's contrast and saturation change anything.
+    pub graded: bool,
     /// Whether clouds are found by tracking, which needs bounds of their density.
     pub tracks: bool,
     /// Samples of each pixel; those of paths are their own.
     pub pixel_samples: u32,
-    /// Why each entry is as it is.
-    pub reasons: Vec<Reason>,
+    /// A verdict on each effect, in their order.
+    pub verdicts: Vec<Verdict>,
 }
 
 impl FramePlan {
     /// The plan of a frame.
     pub fn new(frame: &Frame<'_>) -> Self {
+        Self::forced(frame, Forced::default())
+    }
+
+    /// The plan of a frame with some effects forced on or off.
+    pub fn forced(frame: &Frame<'_>, forced: Forced) -> Self {
         let scene = frame.scene;
         let lighting = Lighting::new(scene);
-        let mut why = Reasons::default();
-        let ground = ground(frame, &lighting, &mut why);
-        let march = MarchVariant::new(frame, ground.is_some(), &lighting, &mut why);
-        let temporal = temporal(frame, march.is_some(), &mut why);
-        let sunshafts = sunshafts(frame, march.is_some() || ground.is_some(), &lighting, &mut why);
+        let mut why = Verdicts::new(forced);
+        let ground = lights::ground(frame, &mut why);
+        let field = MarchVariant::of_field(frame, &mut why);
+        let has_field = field.is_some();
+        let cloud_rows = cloud_rows(frame, (has_field, ground.is_some()), &mut why);
+        let has_clouds = !cloud_rows.is_empty();
+        let shadow_px = lights::cloud_shadow(frame, (ground.is_some(), has_field), &lighting, &mut why);
+        let temporal = temporal(frame, has_clouds, &mut why);
+        let march = field.filter(|_| has_clouds || shadow_px.is_some()).map(|field| {
+            let is_partial = temporal.is_some();
+            if has_clouds { field.marched(frame, (ground.is_some(), is_partial), &lighting, &mut why) } else { field }
+        });
+        let sunshafts = lights::sunshafts(frame, has_clouds || ground.is_some(), &lighting, &mut why);
+        let sky = lights::sky(frame, ground.is_some(), march, &lighting, &mut why);
+        let display = &scene.display;
+        let graded = why.needed_if(
+            display.contrast != 1.0 || display.saturation != 1.0,
+            Effect::Grading,
+            format!("contrast is {}, saturation {}", display.contrast, display.saturation),
+            "contrast and saturation are 1",
+        );
         Self {
             key: lighting.key,
-            plain: plain(scene, &mut why),
-            stars: stars(&lighting, scene.plain_light.enabled, &mut why),
-            ground,
+            sky,
+            ground: ground.map(|ground| GroundPlan { shadow_px, ..ground }),
             march,
+            cloud_rows,
             temporal,
             sunshafts,
             float: frame.output != Output::Display,
             alone: frame.output == Output::CloudsAlone,
             tone_map: scene.display.tone_map,
+            graded,
             tracks: false,
             pixel_samples: 1,
-            reasons: why.0,
+            verdicts: why.complete(),
         }
+    }
+
+    /// The plan of a frame whose clouds are wanted whether they are in view or not.
+    pub fn of_clouds(frame: &Frame<'_>) -> Self {
+        Self::forced(frame, Forced::default().with(Effect::Clouds, Some(true)))
     }
 
     /// The plan of a picture that takes its time: all pixels, with several samples each but for paths, at the frame's own
     /// size.
-    pub fn for_still(frame: &Frame<'_>, integrator: Integrator, pixel_samples: u32) -> Self {
+    pub fn for_still(frame: &Frame<'_>, (integrator, pixel_samples): (Integrator, u32), forced: Forced) -> Self {
         let is_traced = integrator == Integrator::PathTraced;
         let pixel_samples = if is_traced { 1 } else { pixel_samples.max(1) };
-        Self { temporal: None, tracks: is_traced, pixel_samples, ..Self::new(frame) }
+        let whole = Quality { update: UpdateFraction::Full, ..frame.quality.clone() };
+        let mut plan = Self::forced(&Frame { quality: &whole, ..*frame }, forced);
+        (plan.tracks, plan.pixel_samples) = (is_traced, pixel_samples);
+        if integrator != Integrator::Realtime && plan.has_clouds() {
+            // They walk through all pixels, and never look where it is clear.
+            plan.cloud_rows = 0..frame.render_size()[1];
+            plan.march = plan.march.map(|march| if is_traced { march.traced(frame.scene) } else { march });
+        }
+        plan
     }
-}
 
-impl FramePlan {
+    /// Whether clouds are in the picture, and not only their shadows.
+    pub fn has_clouds(&self) -> bool {
+        !self.cloud_rows.is_empty()
+    }
+
+    /// The verdict on an effect.
+    pub fn verdict(&self, effect: Effect) -> &Verdict {
+        &self.verdicts[effect as usize]
+    }
+
+    /// Whether an effect runs.
+    pub fn runs(&self, effect: Effect) -> bool {
+        self.verdict(effect).runs
+    }
+
     /// Whether a scene of the other plan holds everything that this one draws from.
     pub fn fits(&self, other: &Self) -> bool {
         let source = |plan: &Self| plan.march.map(|march| (march.grid, march.baked, march.layers));
-        self.plain == other.plain && source(self) == source(other)
+        self.sky.is_some() == other.sky.is_some() && source(self) == source(other)
     }
 }
 
-fn plain(scene: &Scene, why: &mut Reasons) -> bool {
-    let plain = scene.plain_light.enabled;
-    why.either(!plain, "sky tables", "the light comes through air", "the light is plain: there is no air");
-    plain
-}
-
-fn ground(frame: &Frame<'_>, lighting: &Lighting, why: &mut Reasons) -> Option<GroundPlan> {
-    let ground = &frame.scene.ground;
-    let camera = &frame.scene.camera;
-    let relief_m = ground.mountains_m + ground.hills_m;
-    let lowest_ray_deg = match camera.projection {
-        Projection::Perspective => camera.pitch_deg - half_diagonal_deg(frame),
-        Projection::Equirect => -90.0,
-        Projection::Dome => 0.0,
-    };
-    let relief_angle_deg = if relief_m > 0.0 { 35.0 } else { 0.0 };
-    if frame.scene.plain_light.enabled {
-        why.no("ground", "the light is plain");
-        return None;
-    }
-    if !ground.visible {
-        why.no("ground", "it is switched off");
-        return None;
-    }
-    if frame.output == Output::CloudsAlone && relief_m <= 0.0 {
-        why.no("ground", "only clouds are written, and a plain hides none of them above the horizon");
-        return None;
-    }
-    if lowest_ray_deg > relief_angle_deg {
-        why.no("ground", format!("the view begins {lowest_ray_deg:.0}° above the horizon"));
-        return None;
-    }
-    why.yes("ground", "it is in view");
-    let terrain = relief_m > 0.0;
-    why.either(terrain, "terrain", format!("relief is {relief_m:.0} m high"), "there are no hills and no mountains");
-    let shadow_px = cloud_shadow(frame, lighting, why);
-    let open_rows = horizon::open_rows(frame);
-    let rows = frame.render_size()[1];
-    why.either(
-        open_rows < rows,
-        "ground in each row",
-        format!("the upper {open_rows} of {rows} rows lie above it"),
-        "it lies below the picture",
+/// Rows of the picture that are marched.
+fn cloud_rows(frame: &Frame<'_>, (has_field, has_ground): (bool, bool), why: &mut Verdicts) -> Range<u32> {
+    let all = frame.render_size()[1];
+    let in_view = if has_field { rows::cloud_rows(frame, has_ground) } else { 0..0 };
+    let runs = why.unless(
+        Effect::Clouds,
+        &[
+            (!has_field, Need::Impossible, variant::no_cloud(frame.scene)),
+            (in_view.is_empty(), Need::Needless, "the view misses all of them"),
+        ],
+        format!("{} layer(s) can hold cloud", frame.scene.visible_layers().count()),
     );
-    Some(GroundPlan { terrain, shadow_px, open_rows })
+    let everywhere = why.unless(
+        Effect::CloudsEverywhere,
+        &[
+            (!runs, Need::Impossible, "no cloud is marched"),
+            (in_view.is_empty(), Need::Impossible, "no row meets any"),
+            (in_view != (0..all), Need::Needless, "no cloud can be in some rows"),
+        ],
+        "clouds may be in every row",
+    );
+    match (runs, everywhere || in_view.is_empty()) {
+        (false, _) => 0..0,
+        (true, true) => 0..all,
+        (true, false) => in_view,
+    }
 }
 
-fn cloud_shadow(frame: &Frame<'_>, lighting: &Lighting, why: &mut Reasons) -> Option<u32> {
-    let scene = frame.scene;
-    let because = if scene.ground.cloud_shadows <= 0.0 {
-        "their strength is 0"
-    } else if lighting.key == KeyLight::None || lighting.towards_key.y <= 0.02 {
-        "no light falls steeply enough on the ground"
-    } else if scene.visible_layers().next().is_none() {
-        "there is no cloud to cast any"
-    } else {
-        why.yes("cloud shadows", "lit ground is in view below clouds");
-        return Some(frame.quality.shadow_map_px);
-    };
-    why.no("cloud shadows", because);
-    None
-}
-
-fn temporal(frame: &Frame<'_>, has_clouds: bool, why: &mut Reasons) -> Option<UpdatePattern> {
-    let because = if !has_clouds {
-        "no cloud is marched"
-    } else if frame.output != Output::Display {
-        "a still is marched whole"
-    } else if frame.quality.update == UpdateFraction::Full {
-        "every pixel is computed in every frame"
-    } else {
-        let pattern = UpdatePattern::new(frame.quality.update, frame.quality.update_order);
-        why.yes("temporal reprojection", format!("one pixel of {} is computed in a frame", pattern.phases()));
-        return Some(pattern);
-    };
-    why.no("temporal reprojection", because);
-    None
-}
-
-fn sunshafts(frame: &Frame<'_>, has_occluder: bool, lighting: &Lighting, why: &mut Reasons) -> Option<u32> {
-    let scene = frame.scene;
-    let reach_deg = scene.sunshafts.length_deg;
-    let off_axis_deg = angle_off_view_deg(scene, lighting.towards_key);
-    let in_reach = match scene.camera.projection {
-        Projection::Perspective => off_axis_deg < half_diagonal_deg(frame) + reach_deg,
-        _ => true,
-    };
-    let because = if scene.sunshafts.strength <= 0.0 {
-        "their strength is 0".to_owned()
-    } else if scene.plain_light.enabled {
-        "there is no air".to_owned()
-    } else if lighting.key == KeyLight::None || lighting.towards_key.y < -0.02 {
-        "the light is below the horizon".to_owned()
-    } else if !has_occluder {
-        "nothing stands before the light".to_owned()
-    } else if !in_reach {
-        format!("the light is {off_axis_deg:.0}° away from the view")
-    } else if frame.output == Output::CloudsAlone {
-        "only clouds are written".to_owned()
-    } else {
-        why.yes("sunshafts", "the light is near the view, behind things");
-        return Some(frame.quality.shaft_samples);
-    };
-    why.no("sunshafts", because);
-    None
-}
-
-fn stars(lighting: &Lighting, plain: bool, why: &mut Reasons) -> bool {
-    let night = lighting.towards_sun.y < -0.12 && !plain;
-    why.either(night, "stars", "the sun is far below the horizon", "the sky is too bright, or plain");
-    night
-}
-
-/// Half the angle across the picture's diagonal.
-fn half_diagonal_deg(frame: &Frame<'_>) -> f32 {
-    let [across, up] = frame.scene.camera.half_tangents(frame.render_size());
-    across.hypot(up).atan().to_degrees()
-}
-
-fn angle_off_view_deg(scene: &Scene, towards: glam::Vec3) -> f32 {
-    let forward = crate::scene::direction(scene.camera.pitch_deg, scene.camera.heading_deg);
-    forward.dot(towards).clamp(-1.0, 1.0).acos().to_degrees()
+fn temporal(frame: &Frame<'_>, has_clouds: bool, why: &mut Verdicts) -> Option<UpdatePattern> {
+    let pattern = UpdatePattern::new(frame.quality.update, frame.quality.update_order);
+    why.unless(
+        Effect::Temporal,
+        &[
+            (!has_clouds, Need::Impossible, "no cloud is marched"),
+            (frame.output != Output::Display, Need::Impossible, "a still is marched whole"),
+            (frame.quality.update == UpdateFraction::Full, Need::Impossible, "every pixel is computed in every frame"),
+        ],
+        format!("one pixel of {} is computed in a frame", pattern.phases()),
+    )
+    .then_some(pattern)
 }
 
 #[cfg(test)]

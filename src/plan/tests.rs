@@ -1,7 +1,7 @@
 //! Each rule of the plan as a row of a table.
 
 use super::*;
-use crate::scene::{DensityModel, Quality};
+use crate::scene::{DensityModel, Projection, Quality, Scene};
 
 fn plan_of(change: impl FnOnce(&mut Scene, &mut Quality)) -> FramePlan {
     plan_for(Output::Display, change)
@@ -13,8 +13,8 @@ fn plan_for(output: Output, change: impl FnOnce(&mut Scene, &mut Quality)) -> Fr
     FramePlan::new(&Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output })
 }
 
-fn because(plan: &FramePlan, effect: &str) -> String {
-    plan.reasons.iter().find(|reason| reason.effect == effect).map_or(String::new(), |reason| reason.because.clone())
+fn because(plan: &FramePlan, effect: Effect) -> &str {
+    &plan.verdict(effect).because
 }
 
 #[test]
@@ -25,7 +25,8 @@ fn the_default_sky_calls_for_clouds_ground_shadows_and_history() {
     assert!(!march.thesis && !march.uniform && !march.front && !march.float, "{march:?}");
     assert!(plan.ground.is_some_and(|ground| ground.terrain && ground.shadow_px.is_some()), "{:?}", plan.ground);
     assert_eq!(plan.temporal.map(UpdatePattern::phases), Some(16));
-    assert_eq!((plan.sunshafts, plan.stars, plan.key), (None, false, KeyLight::Sun));
+    assert_eq!((plan.sunshafts, plan.key), (None, KeyLight::Sun));
+    assert!(plan.sky.is_some_and(|sky| !sky.stars && !sky.sun_disc && !sky.moonlit), "{:?}", plan.sky);
 }
 
 #[test]
@@ -54,7 +55,7 @@ fn no_cloud_no_march_no_history_no_shadow() {
         let plan = plan_of(|scene, _| change(scene));
         assert_eq!((plan.march, plan.temporal), (None, None));
         assert!(plan.ground.is_some_and(|ground| ground.shadow_px.is_none()), "no shadow without cloud");
-        assert!(because(&plan, "clouds").contains(word), "{}", because(&plan, "clouds"));
+        assert!(because(&plan, Effect::Clouds).contains(word), "{}", because(&plan, Effect::Clouds));
     }
 }
 
@@ -72,7 +73,7 @@ fn the_models_in_use_decide_which_noise_is_bound() {
 #[test]
 fn looking_up_leaves_the_ground_out() {
     let plan = plan_of(|scene, _| scene.camera.pitch_deg = 89.0);
-    assert_eq!(plan.ground, None, "{}", because(&plan, "ground"));
+    assert_eq!(plan.ground, None, "{}", because(&plan, Effect::Ground));
     assert!(plan_of(|scene, _| scene.camera.projection = Projection::Equirect).ground.is_some());
 }
 
@@ -94,7 +95,7 @@ fn sunshafts_need_a_light_near_the_view() {
 #[test]
 fn night_has_stars_and_a_moon() {
     let plan = plan_of(|scene, _| scene.sun.elevation_deg = -20.0);
-    assert_eq!((plan.stars, plan.key), (true, KeyLight::Moon));
+    assert_eq!((plan.sky.map(|sky| sky.stars), plan.key), (Some(true), KeyLight::Moon));
 }
 
 #[test]
@@ -106,14 +107,48 @@ fn files_are_marched_whole_in_float() {
 }
 
 #[test]
-fn every_entry_has_its_reason_once() {
-    let plan = plan_of(|_, _| {});
-    let mut effects: Vec<_> = plan.reasons.iter().map(|reason| reason.effect).collect();
-    effects.sort_unstable();
-    let count = effects.len();
-    effects.dedup();
-    assert_eq!(effects.len(), count);
-    assert!(plan.reasons.iter().all(|reason| reason.because.len() > 6), "{:?}", plan.reasons);
+fn there_is_a_verdict_on_every_effect() {
+    for change in [(|_| ()) as fn(&mut Scene), |scene| scene.layers.clear(), |scene| scene.plain_light.enabled = true] {
+        let plan = plan_of(|scene, _| change(scene));
+        let effects: Vec<Effect> = plan.verdicts.iter().map(|verdict| verdict.effect).collect();
+        assert_eq!(effects, Effect::ALL, "one each, in order");
+        assert!(plan.verdicts.iter().all(|verdict| verdict.because.len() > 6), "{:?}", plan.verdicts);
+    }
+}
+
+#[test]
+fn what_is_forced_runs_or_not_unless_it_cannot() {
+    let forced = |effect, wanted, change: fn(&mut Scene)| {
+        let (mut scene, quality) = (Scene::default(), Quality::default());
+        change(&mut scene);
+        let frame =
+            Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output: Output::Display };
+        FramePlan::forced(&frame, Forced::default().with(effect, Some(wanted)))
+    };
+    assert!(forced(Effect::Sunshafts, true, |_| ()).sunshafts.is_some(), "strength is 0");
+    assert!(forced(Effect::Detail, false, |_| ()).march.is_some_and(|march| !march.detail && !march.curl));
+    let plan = forced(Effect::Curl, true, |scene| scene.layers[0].detail_strength = 0.0);
+    assert!(!plan.runs(Effect::Curl), "nothing reads it");
+    let plan = forced(Effect::SkyTables, false, |_| ());
+    assert!(plan.runs(Effect::SkyTables) && !plan.verdict(Effect::SkyTables).is_forced(), "everything is lit by it");
+    let plan = forced(Effect::Stars, true, |_| ());
+    assert!(plan.verdict(Effect::Stars).is_forced() && plan.verdict(Effect::Stars).line().contains("forced on"));
+}
+
+#[test]
+fn clouds_that_the_view_misses_are_not_marched() {
+    let rows = |change: fn(&mut Scene)| plan_of(|scene, _| change(scene)).cloud_rows;
+    let level = rows(|scene| scene.camera.pitch_deg = 0.0);
+    assert!(level.start == 0 && (45..50).contains(&level.end), "down to the horizon: {level:?}");
+    assert_eq!(rows(|scene| scene.camera.pitch_deg = -80.0), 0..0, "straight down from below them");
+    let above = rows(|scene| (scene.camera.height_m, scene.camera.pitch_deg) = (9000.0, 0.0));
+    assert!((46..54).contains(&above.start) && above.end == 90, "from above: {above:?}");
+    assert_eq!(rows(|scene| (scene.camera.height_m, scene.camera.pitch_deg) = (2000.0, 89.0)), 0..90, "from within");
+    let plan = plan_of(|scene, _| scene.camera.pitch_deg = -80.0);
+    assert!(plan.march.is_some_and(|march| !march.lit && !march.skip), "their shadows are still there");
+    assert_eq!((plan.temporal, plan.has_clouds()), (None, false));
+    let bare = plan_of(|scene, _| (scene.camera.pitch_deg, scene.ground.cloud_shadows) = (-80.0, 0.0));
+    assert_eq!(bare.march, None);
 }
 
 #[test]
@@ -121,8 +156,8 @@ fn stills_march_all_pixels_several_times_and_paths_have_samples_of_their_own() {
     let (scene, quality) = (Scene::default(), Quality::default());
     let frame = Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output: Output::Display };
     assert_eq!(FramePlan::new(&frame).pixel_samples, 1, "a moving picture has one");
-    let still = FramePlan::for_still(&frame, Integrator::Realtime, 4);
+    let still = FramePlan::for_still(&frame, (Integrator::Realtime, 4), Forced::default());
     assert_eq!((still.temporal, still.pixel_samples, still.tracks), (None, 4, false));
-    let traced = FramePlan::for_still(&frame, Integrator::PathTraced, 4);
+    let traced = FramePlan::for_still(&frame, (Integrator::PathTraced, 4), Forced::default());
     assert_eq!((traced.pixel_samples, traced.tracks), (1, true));
 }

@@ -1,11 +1,38 @@
 //! The compiled form of the march.
 
-use super::reasons::Reasons;
+use super::decide::{Need, Verdicts};
+use super::effect::Effect;
+use super::view;
 use super::{KeyLight, Lighting};
-use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapSource, Output, Scene};
+use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapSource, Output, PhaseKind, Scene};
 
 /// Fewest voxels across a baked box; half as many upwards have to be more than one.
 const LEAST_VOXELS: u32 = 4;
+
+/// Which phase functions some layer has; scattering the same in all directions takes none of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Phases {
+    /// Henyey and Greenstein's.
+    pub one_lobe: bool,
+    /// Two of them, mixed.
+    pub two_lobes: bool,
+    /// Cornette and Shanks's.
+    pub cornette_shanks: bool,
+    /// Schlick's.
+    pub schlick: bool,
+    /// Rayleigh's.
+    pub rayleigh: bool,
+}
+
+impl Phases {
+    const FLAGS: [&'static str; 5] =
+        ["PHASE_ONE_LOBE", "PHASE_TWO_LOBES", "PHASE_CORNETTE_SHANKS", "PHASE_SCHLICK", "PHASE_RAYLEIGH"];
+
+    fn flags(self) -> impl Iterator<Item = &'static str> {
+        let on = [self.one_lobe, self.two_lobes, self.cornette_shanks, self.schlick, self.rayleigh];
+        Self::FLAGS.into_iter().zip(on).filter_map(|(flag, on)| on.then_some(flag))
+    }
+}
 
 /// The compiled form of the march: the key of its pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -38,6 +65,12 @@ pub struct MarchVariant {
     pub curl: bool,
     /// Coverage differs on the two sides of a front.
     pub front: bool,
+    /// The key light shines on the clouds.
+    pub lit: bool,
+    /// The light of the whole sky does.
+    pub ambient: bool,
+    /// How they scatter it.
+    pub phases: Phases,
     /// The air in front of clouds is drawn.
     pub air: bool,
     /// The ground may end a ray.
@@ -46,81 +79,195 @@ pub struct MarchVariant {
     pub float: bool,
     /// Clear air is crossed in steps as long as the map allows.
     pub skip: bool,
+    /// The distance of the clouds is kept.
+    pub distance: bool,
 }
 
 impl MarchVariant {
-    /// Every flag the cloud shaders know.
-    pub const FLAGS: [&'static str; 15] = [
-        "PROFILE", "THESIS", "UNIFORM", "TEXTURE", "GRID", "BAKED", "MAPLESS", "DETAIL", "CURL", "FRONT", "PLAIN",
-        "AIR", "GROUND", "FLOAT", "SKIP",
-    ];
+    /// Every flag of the density field.
+    const FIELD_FLAGS: [&'static str; 10] =
+        ["PROFILE", "THESIS", "UNIFORM", "TEXTURE", "GRID", "BAKED", "MAPLESS", "DETAIL", "CURL", "FRONT"];
 
-    /// The variant a frame needs, or `None` when no cloud can be in it.
-    pub(super) fn new(frame: &Frame<'_>, ground: bool, lighting: &Lighting, why: &mut Reasons) -> Option<Self> {
+    /// The variant that reads a frame's layers, or `None` where none can hold cloud. What only light and the march itself
+    /// need is left out of it until [`Self::marched`].
+    pub(super) fn of_field(frame: &Frame<'_>, why: &mut Verdicts) -> Option<Self> {
         let scene = frame.scene;
         let layers: Vec<&CloudLayer> = scene.visible_layers().collect();
         if layers.is_empty() {
-            why.no("clouds", no_cloud(scene));
             return None;
         }
-        why.yes("clouds", format!("{} layer(s) can hold cloud", layers.len()));
         let any = |test: fn(&CloudLayer) -> bool| layers.iter().any(|layer| test(layer));
-        let detail = any(CloudLayer::has_detail);
-        why.either(detail, "detail noise", "some layer is eroded", "erosion is 0 in every layer");
-        let curl = detail && any(CloudLayer::has_curl);
-        why.either(curl, "curl noise", "it drags the detail", "it drags nothing");
-        let front = scene.weather.coverage_changes && scene.weather.coverage != scene.weather.coverage_change_to;
-        why.either(front, "coverage front", "another coverage arrives", "coverage is the same everywhere");
-        let lit = lighting.key != KeyLight::None;
-        let octaves = if lit { frame.quality.octaves } else { 0 };
-        why.either(octaves > 0, "scattering octaves", format!("{octaves} on top of the first"), "only the first order");
-        let plain = scene.plain_light.enabled;
-        let air = scene.air.aerial_perspective && frame.output != Output::CloudsAlone && !plain;
-        why.either(
-            air,
-            "aerial perspective",
-            "air lies before the clouds",
-            "it is switched off, or clouds stand alone, or there is none",
+        let has = |model: DensityModel| layers.iter().any(|layer| layer.model == model);
+        let mut model = |effect: Effect, which: DensityModel| {
+            why.needed_if(has(which), effect, "some layer has it", "no layer has it")
+        };
+        let profile = model(Effect::Profile, DensityModel::Profile);
+        let thesis = model(Effect::Thesis, DensityModel::Thesis);
+        let uniform = model(Effect::Uniform, DensityModel::Uniform);
+        let texture = model(Effect::Texture, DensityModel::Texture);
+        let grid = has(DensityModel::Grid);
+        why.unless(Effect::Grid, &[(!grid, Need::Impossible, "no layer names a file")], "some layer has it");
+        why.unless(
+            Effect::ShapeNoise,
+            &[(!profile && !texture, Need::Impossible, "no model reads it")],
+            "some model reads it",
         );
-        if any(|layer| layer.model == DensityModel::Texture)
-            && scene.weather.layers.iter().all(|map| map.source == MapSource::Generated)
-        {
-            why.no("weather texture", "the map holds no heights; set its source to a weather texture or an image");
-        }
+        let has_heights = scene.weather.layers.iter().any(|map| map.source != MapSource::Generated);
         let baked = baked(frame, why);
-        let mapless = layers.iter().all(|layer| !layer.reads_map());
-        let repeats = scene.weather.edge == MapEdge::Repeat;
-        let skip = repeats
-            && baked.is_none()
-            && frame.quality.skip_clear
-            && frame.quality.empty_stride > 1.0
-            && any(|layer| !matches!(layer.model, DensityModel::Uniform | DensityModel::Grid));
-        why.either(
-            skip,
-            "empty-space skipping",
-            "the map says where nothing is",
-            "it is switched off, or steps are equal, or the map ends, or voxels are read",
+        let reads_map = any(CloudLayer::reads_map) || profile || thesis || uniform || texture;
+        let of_map = if texture && !has_heights {
+            "it holds no heights for the weather texture: set its source to a weather texture or an image"
+        } else {
+            "layers are placed by it"
+        };
+        why.unless(Effect::WeatherMap, &[(!reads_map, Need::Impossible, "no layer is placed by it")], of_map);
+        let detail = why.needed_if(
+            any(CloudLayer::has_detail),
+            Effect::Detail,
+            "some layer is eroded",
+            "erosion is 0 in every layer",
+        );
+        let curl = why.unless(
+            Effect::Curl,
+            &[
+                (!detail, Need::Impossible, "there is no detail to drag"),
+                (!any(CloudLayer::has_curl), Need::Needless, "it drags nothing"),
+            ],
+            "it drags the detail",
+        );
+        let weather = &scene.weather;
+        let front = why.unless(
+            Effect::Front,
+            &[
+                (!weather.coverage_changes, Need::Unwanted, "coverage does not change"),
+                (weather.coverage == weather.coverage_change_to, Need::Needless, "it changes to what it is"),
+            ],
+            "another coverage arrives",
         );
         Some(Self {
             layers: u32::try_from(layers.len()).unwrap_or(1),
-            octaves,
+            octaves: 0,
             domain: scene.domain.kind,
-            profile: any(|layer| layer.model == DensityModel::Profile),
-            thesis: any(|layer| layer.model == DensityModel::Thesis),
-            uniform: any(|layer| layer.model == DensityModel::Uniform),
-            texture: any(|layer| layer.model == DensityModel::Texture),
-            grid: any(|layer| layer.model == DensityModel::Grid),
+            profile,
+            thesis,
+            uniform,
+            texture,
+            grid,
             baked,
-            mapless,
-            plain,
+            mapless: !reads_map,
+            plain: scene.plain_light.enabled,
             detail,
             curl,
             front,
-            air,
-            ground,
+            lit: false,
+            ambient: false,
+            phases: Phases::default(),
+            air: false,
+            ground: false,
             float: frame.output != Output::Display,
-            skip,
+            skip: false,
+            distance: false,
         })
+    }
+
+    /// The variant with what the march needs beside the field.
+    pub(super) fn marched(
+        self,
+        frame: &Frame<'_>,
+        (ground, temporal): (bool, bool),
+        lighting: &Lighting,
+        why: &mut Verdicts,
+    ) -> Self {
+        let (scene, quality) = (frame.scene, frame.quality);
+        let scatters = |gain: fn(&CloudLayer) -> f32| {
+            scene.visible_layers().any(|layer| layer.scattering_per_m * gain(layer) > 0.0)
+        };
+        let shines = scatters(|layer| layer.brightness * layer.phase_gain);
+        let lit = why.unless(
+            Effect::KeyLight,
+            &[
+                (lighting.key == KeyLight::None, Need::Needless, "neither sun nor moon shines"),
+                (!shines, Need::Needless, "no layer scatters it"),
+                (
+                    !scene.plain_light.enabled && view::is_below_all_horizons(frame, lighting),
+                    Need::Needless,
+                    "it is below the horizon of the highest cloud",
+                ),
+            ],
+            match lighting.key {
+                KeyLight::Moon => "the moon shines",
+                _ => "the sun shines",
+            },
+        );
+        let octaves = why.unless(
+            Effect::Octaves,
+            &[
+                (!lit, Need::Impossible, "no light is marched towards"),
+                (quality.octaves == 0, Need::Impossible, "the quality asks for the first order alone"),
+                (scene.scattering.octave_energy <= 0.0, Need::Needless, "their energy is 0"),
+            ],
+            format!("{} on top of the first", quality.octaves),
+        );
+        let ambient_light = scene.scattering.ambient
+            * scene.scattering.ambient_top.vec().max(scene.scattering.ambient_bottom.vec()).max_element();
+        let plain = &scene.plain_light;
+        let ambient = why.unless(
+            Effect::Ambient,
+            &[
+                (ambient_light <= 0.0, Need::Needless, "its strength is 0"),
+                (!scatters(|layer| layer.brightness), Need::Needless, "no layer scatters it"),
+                (plain.enabled && plain.sky_radiance <= 0.0, Need::Needless, "the sky is black"),
+            ],
+            "the sky shines on the clouds",
+        );
+        let air = why.unless(
+            Effect::Air,
+            &[
+                (plain.enabled, Need::Impossible, "there is no air"),
+                (frame.output == Output::CloudsAlone, Need::Unwanted, "clouds stand alone"),
+                (!scene.air.aerial_perspective, Need::Unwanted, "it is switched off"),
+                (
+                    scene.air.haze.max(scene.air.molecules).max(scene.air.ozone) <= 0.0,
+                    Need::Needless,
+                    "the air is empty",
+                ),
+            ],
+            "air lies before the clouds",
+        );
+        let distance = why.needed_if(
+            temporal || self.float,
+            Effect::Distance,
+            if temporal { "the next picture takes over from this one" } else { "files hold it" },
+            "nothing asks for it",
+        );
+        let repeats = scene.weather.edge == MapEdge::Repeat;
+        let is_mapped = scene.visible_layers().any(|l| !matches!(l.model, DensityModel::Uniform | DensityModel::Grid));
+        let skip = why.unless(
+            Effect::ClearWays,
+            &[
+                (!repeats, Need::Impossible, "the map has an end"),
+                (self.baked.is_some(), Need::Impossible, "voxels are read"),
+                (!is_mapped, Need::Impossible, "no layer is placed by the map alone"),
+                (quality.empty_stride <= 1.0, Need::Impossible, "all steps are equal"),
+                (!quality.skip_clear, Need::Unwanted, "it is switched off"),
+            ],
+            "the map says where nothing is",
+        );
+        let octaves = if octaves { quality.octaves } else { 0 };
+        Self { octaves, lit, ambient, air, ground, skip, distance, phases: phases(scene, lit, why), ..self }
+    }
+
+    /// The variant of paths, which scatter all light by the layers' phase functions, whatever the march needs.
+    pub(super) fn traced(self, scene: &Scene) -> Self {
+        let used = |kind: PhaseKind| scene.visible_layers().any(|layer| layer.phase.effective_kind() == kind);
+        let phases = Phases {
+            one_lobe: used(PhaseKind::HenyeyGreenstein),
+            two_lobes: used(PhaseKind::TwoLobe),
+            cornette_shanks: used(PhaseKind::CornetteShanks),
+            schlick: used(PhaseKind::Schlick),
+            rayleigh: used(PhaseKind::Rayleigh),
+        };
+        Self { phases, ..self }
     }
 
     /// Whether some layer reads the large noise.
@@ -154,6 +301,22 @@ impl MarchVariant {
 
     /// Parts of the shader that add a binding are switched by text, or the layout would still need them.
     pub fn flags(self) -> impl Iterator<Item = &'static str> {
+        let own = [
+            ("PLAIN", self.plain),
+            ("LIT", self.lit),
+            ("AMBIENT", self.ambient),
+            ("AIR", self.air),
+            ("GROUND", self.ground),
+            ("FLOAT", self.float),
+            ("SKIP", self.skip),
+            ("DISTANCE", self.distance),
+        ];
+        let own = own.into_iter().filter_map(|(flag, on)| on.then_some(flag));
+        self.field_flags().chain(self.phases.flags()).chain(own)
+    }
+
+    /// The flags that decide how the density field is read, for other passes that read it.
+    pub fn field_flags(self) -> impl Iterator<Item = &'static str> {
         let seen = self.seen();
         let on = [
             seen.profile,
@@ -166,18 +329,24 @@ impl MarchVariant {
             seen.detail,
             seen.curl,
             seen.front,
-            seen.plain,
-            seen.air,
-            seen.ground,
-            seen.float,
-            seen.skip,
         ];
-        Self::FLAGS.into_iter().zip(on).filter_map(|(flag, on)| on.then_some(flag))
+        Self::FIELD_FLAGS.into_iter().zip(on).filter_map(|(flag, on)| on.then_some(flag))
     }
 
-    /// The flags that decide how the density field is read, for other passes that read it.
-    pub fn field_flags(self) -> impl Iterator<Item = &'static str> {
-        self.flags().filter(|flag| !matches!(*flag, "PLAIN" | "AIR" | "GROUND" | "FLOAT" | "SKIP"))
+    /// The same without anything but the field: for what is made from it once, whoever looks.
+    pub fn field_alone(self) -> Self {
+        Self {
+            octaves: 0,
+            lit: false,
+            ambient: false,
+            phases: Phases::default(),
+            air: false,
+            ground: false,
+            float: false,
+            skip: false,
+            distance: false,
+            ..self
+        }
     }
 
     /// Numbers the compiler should know.
@@ -191,16 +360,42 @@ impl MarchVariant {
 }
 
 /// Voxels from west to east where all layers are to be read from baked ones.
-fn baked(frame: &Frame<'_>, why: &mut Reasons) -> Option<u32> {
+fn baked(frame: &Frame<'_>, why: &mut Verdicts) -> Option<u32> {
     let voxels = frame.quality.grid_voxels;
-    let is_box = frame.scene.domain.kind == DomainKind::Box;
-    let baked = (voxels > 0 && is_box).then_some(voxels.max(LEAST_VOXELS));
-    let because = if voxels == 0 { "the field is read as it is" } else { "only a box can be baked" };
-    why.either(baked.is_some(), "baked voxels", format!("{voxels} of them across"), because);
-    baked
+    why.unless(
+        Effect::Baked,
+        &[
+            (voxels == 0, Need::Impossible, "the field is read as it is"),
+            (frame.scene.domain.kind != DomainKind::Box, Need::Impossible, "only a box can be baked"),
+        ],
+        format!("{voxels} of them across"),
+    )
+    .then_some(voxels.max(LEAST_VOXELS))
 }
 
-fn no_cloud(scene: &Scene) -> &'static str {
+/// The phase functions of the layers, where light is scattered at all.
+fn phases(scene: &Scene, lit: bool, why: &mut Verdicts) -> Phases {
+    let mut function = |effect: Effect, kind: PhaseKind| {
+        let is_used = scene.visible_layers().any(|layer| layer.phase.effective_kind() == kind);
+        let is_named = scene.visible_layers().any(|layer| layer.phase.kind == kind);
+        let if_not = if is_named { "its share is 0" } else { "no layer has it" };
+        why.unless(
+            effect,
+            &[(!lit, Need::Impossible, "no light is scattered by angle"), (!is_used, Need::Needless, if_not)],
+            "some layer has it",
+        )
+    };
+    Phases {
+        one_lobe: function(Effect::HenyeyGreenstein, PhaseKind::HenyeyGreenstein),
+        two_lobes: function(Effect::TwoLobes, PhaseKind::TwoLobe),
+        cornette_shanks: function(Effect::CornetteShanks, PhaseKind::CornetteShanks),
+        schlick: function(Effect::Schlick, PhaseKind::Schlick),
+        rayleigh: function(Effect::Rayleigh, PhaseKind::Rayleigh),
+    }
+}
+
+/// Why no layer holds any cloud.
+pub(super) fn no_cloud(scene: &Scene) -> &'static str {
     if scene.layers.iter().all(|layer| !layer.enabled) {
         "every layer is switched off"
     } else if scene.layers.iter().all(|layer| !layer.is_visible()) {

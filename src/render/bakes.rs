@@ -144,7 +144,10 @@ pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
         ("pass/bake_terrain.wgsl", plan.ground.is_some_and(|ground| ground.terrain)),
         ("pass/weather_map.wgsl", wants(|march| !march.mapless)),
         ("pass/weather_blend.wgsl", wants(|march| !march.mapless)),
-        ("pass/weather_bound.wgsl", plan.tracks && wants(|march| !march.mapless && march.baked.is_none())),
+        (
+            "pass/weather_bound.wgsl",
+            plan.tracks && plan.has_clouds() && wants(|march| !march.mapless && march.baked.is_none()),
+        ),
     ];
     all.into_iter().filter(|(_, wanted)| *wanted).map(|(file, _)| ProgramKey::plain(file)).collect()
 }

@@ -93,7 +93,7 @@ fn in_place(layer: LayerUniforms) -> LayerUniforms {
 
 /// The programs that say which cells may hold cloud, and how far it is to them.
 fn keys(march: MarchVariant) -> [ProgramKey; 2] {
-    let march = MarchVariant { octaves: 0, air: false, ground: false, float: false, ..march.to_bake() };
+    let march = march.to_bake().field_alone();
     ["pass/clear_cells.wgsl", "pass/clear_spread.wgsl"].map(|file| field_key(file, march))
 }
 

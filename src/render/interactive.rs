@@ -38,7 +38,7 @@ impl Renderer {
             self.history = None;
         }
         self.is_compiling = false;
-        let mut plan = FramePlan::new(frame);
+        let mut plan = FramePlan::forced(frame, self.forced);
         if !self.is_ready(&plan)? {
             match self.last_plan.clone() {
                 Some(last) if last != plan && last.fits(&plan) && self.is_ready(&last)? => plan = last,

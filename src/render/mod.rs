@@ -26,13 +26,13 @@ use std::collections::VecDeque;
 use std::time::Instant;
 
 use crate::gpu::{Gpu, GpuError, Job, PassTime, ProgramCache, ProgramKey, Texture, TimingSource, job};
-use crate::plan::{FramePlan, HistoryKey};
+use crate::plan::{Forced, FramePlan, HistoryKey, SkyPlan};
 use crate::scene::Frame;
 
 use bakes::Bakes;
 use clearance::Clearance;
 use context::Pace;
-use pass::sky::SkyTables;
+use pass::sky::{SkyParts, SkyTables};
 use targets::Targets;
 use uniforms::Eye;
 use voxels::Voxels;
@@ -43,8 +43,10 @@ pub use still::Still;
 
 /// Every program that a frame of this plan may ask for, bakes and the clear sky included.
 pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
-    let sky = pass::sky::programs().into_iter().filter(|_| !plan.plain);
-    sky.chain(bakes::programs(plan))
+    let parts = |sky: SkyPlan| SkyParts { air: sky.air, light: sky.light, moonlit: sky.moonlit };
+    let sky = plan.sky.map_or_else(Vec::new, |sky| pass::sky::programs(parts(sky)));
+    sky.into_iter()
+        .chain(bakes::programs(plan))
         .chain(voxels::programs(plan))
         .chain(clearance::programs(plan))
         .chain(passes::programs(plan, true))
@@ -129,7 +131,8 @@ pub struct Renderer {
     gpu: Gpu,
     programs: ProgramCache,
     pace: Pace,
-    sky: SkyTables,
+    /// Tables of the sky, unless the light is plain.
+    sky: Option<SkyTables>,
     bakes: Bakes,
     weather: WeatherMap,
     clearance: Clearance,
@@ -151,6 +154,8 @@ pub struct Renderer {
     pending: Option<Pending>,
     is_compiling: bool,
     last_plan: Option<FramePlan>,
+    /// What runs, or does not, whatever a scene calls for.
+    forced: Forced,
 }
 
 impl Renderer {
@@ -163,7 +168,7 @@ impl Renderer {
             gpu: gpu.clone(),
             programs: ProgramCache::new(gpu, shaders::TABLE),
             pace: Pace::default(),
-            sky: SkyTables::new(gpu)?,
+            sky: None,
             bakes: Bakes::new(gpu)?,
             weather: WeatherMap::new(),
             clearance: Clearance::default(),
@@ -180,6 +185,7 @@ impl Renderer {
             pending: None,
             is_compiling: false,
             last_plan: None,
+            forced: Forced::default(),
         })
     }
 
@@ -193,7 +199,7 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`] if the device fails or an image of the weather map cannot be used.
     pub fn render(&mut self, frame: &Frame<'_>) -> Result<FrameReport, RenderError> {
-        self.render_as_planned(frame, FramePlan::new(frame))
+        self.render_as_planned(frame, FramePlan::forced(frame, self.forced))
     }
 
     /// Renders the frame by a plan of one's own, to see what another one changes.
@@ -236,6 +242,31 @@ impl Renderer {
         self.jitter_seed = seed;
     }
 
+    /// Forces effects on or off from now on, to see what they change and cost.
+    pub fn force(&mut self, forced: Forced) {
+        if forced != self.forced {
+            self.forced = forced;
+            self.history = None;
+        }
+    }
+
+    /// What is forced.
+    pub fn forced(&self) -> Forced {
+        self.forced
+    }
+
+    /// Lets go of everything on the device but programs, as after an error that left it half made.
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] if the device fails.
+    pub fn forget_everything(&mut self) -> Result<(), RenderError> {
+        self.finish_interactive()?;
+        (self.sky, self.targets, self.history, self.shown, self.last_plan) = (None, None, None, None, None);
+        self.bakes = Bakes::new(&self.gpu)?;
+        (self.weather, self.clearance, self.voxels) = (WeatherMap::new(), Clearance::default(), Voxels::default());
+        Ok(())
+    }
+
     /// Forgets the picture before, as after a cut.
     pub fn forget_history(&mut self) {
         self.history = None;
@@ -253,7 +284,7 @@ impl Renderer {
             + self.weather.bytes()
             + self.clearance.bytes()
             + self.voxels.bytes()
-            + self.sky.bytes()
+            + self.sky.as_ref().map_or(0, SkyTables::bytes)
             + targets
     }
 }

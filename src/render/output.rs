@@ -60,8 +60,8 @@ impl Renderer {
             return Ok(LinearImage { size: [0, 0], rgba: Vec::new(), distance_m: Vec::new(), candela_per_unit });
         };
         let rgba = readback::rgba(&self.gpu, linear)?;
-        let distance_m = match &targets.marched {
-            Some(cloud) => readback::scalars(&self.gpu, &cloud.distance)?,
+        let distance_m = match targets.marched.as_ref().and_then(|cloud| cloud.distance.as_ref()) {
+            Some(distance) => readback::scalars(&self.gpu, distance)?,
             None => vec![0.0; rgba.len()],
         };
         Ok(LinearImage { size: targets.size(), rgba, distance_m, candela_per_unit })
@@ -96,7 +96,7 @@ impl Renderer {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        let (jobs, _) = self.schedule(frame, FramePlan::new(frame), None, Some(&counters))?;
+        let (jobs, _) = self.schedule(frame, FramePlan::forced(frame, self.forced), None, Some(&counters))?;
         job::run(&self.gpu, &jobs)?;
         let _: Option<FrameReport> = self.complete();
         let bytes = readback::buffer(&self.gpu, &counters)?;

@@ -58,6 +58,12 @@ pub(super) fn march_key(march: MarchVariant) -> ProgramKey {
     field_key("pass/march.wgsl", march).with_flags(march.flags()).with_constant("OCTAVES", march.octaves)
 }
 
+/// What is written where no cloud can be.
+fn clear_key(march: MarchVariant) -> ProgramKey {
+    let flags = march.flags().filter(|flag| matches!(*flag, "FLOAT" | "DISTANCE"));
+    ProgramKey::plain("pass/march_clear.wgsl").with_flags(flags)
+}
+
 /// The programs a plan needs for every frame, bakes left out.
 pub(super) fn programs(plan: &FramePlan, with_history: bool) -> Vec<ProgramKey> {
     let mut keys = vec![background_key(plan, false), tonemap_key(plan)];
@@ -65,7 +71,10 @@ pub(super) fn programs(plan: &FramePlan, with_history: bool) -> Vec<ProgramKey> 
         keys.push(background_key(plan, true));
     }
     if let Some(march) = plan.march {
-        keys.push(march_key(march));
+        if plan.has_clouds() {
+            keys.push(march_key(march));
+            keys.push(clear_key(march));
+        }
         if plan.ground.is_some_and(|ground| ground.shadow_px.is_some()) {
             keys.push(field_key("pass/cloud_shadow.wgsl", march));
         }
@@ -88,29 +97,31 @@ pub(super) fn programs(plan: &FramePlan, with_history: bool) -> Vec<ProgramKey> 
 
 /// The background with whatever the plan says of the ground, or of rows that lie above it.
 fn background_key(plan: &FramePlan, is_open: bool) -> ProgramKey {
-    if plan.plain {
+    let Some(sky) = plan.sky else {
         return ProgramKey::plain("pass/background_plain.wgsl").with_flags(plan.float.then_some("FLOAT"));
-    }
+    };
     let ground = plan.ground.filter(|_| !is_open);
     let on = [
         ("GROUND", ground.is_some()),
         ("TERRAIN", ground.is_some_and(|ground| ground.terrain)),
         ("SHADOW", ground.is_some_and(|ground| ground.shadow_px.is_some())),
         ("OPEN", is_open),
-        ("STARS", plan.stars),
+        ("STARS", sky.stars),
+        ("SUN_DISC", sky.sun_disc),
+        ("MOON_DISC", sky.moon_disc),
         ("FLOAT", plan.float),
     ];
     ProgramKey::plain("pass/background.wgsl").with_flags(on.into_iter().filter_map(|(flag, on)| on.then_some(flag)))
 }
 
 fn composed_flags(plan: &FramePlan) -> impl Iterator<Item = &'static str> {
-    [("CLOUDS", plan.march.is_some()), ("SHAFTS", plan.sunshafts.is_some())]
+    [("CLOUDS", plan.has_clouds()), ("SHAFTS", plan.sunshafts.is_some())]
         .into_iter()
         .filter_map(|(flag, on)| on.then_some(flag))
 }
 
 fn composite_key(plan: &FramePlan) -> ProgramKey {
-    let alone = plan.alone && plan.march.is_some();
+    let alone = plan.alone && plan.has_clouds();
     ProgramKey::plain("pass/composite.wgsl")
         .with_flags(composed_flags(plan))
         .with_flags(alone.then_some("ALONE"))
@@ -126,6 +137,7 @@ fn tonemap_key(plan: &FramePlan) -> ProgramKey {
     ProgramKey::plain("pass/tonemap.wgsl")
         .with_flags(composed_flags(plan))
         .with_flags(samples_flag(plan))
+        .with_flags(plan.graded.then_some("GRADED"))
         .with_constant("TONE_MAP", curve)
 }
 
@@ -138,7 +150,9 @@ fn temporal_key(with_history: bool) -> ProgramKey {
 }
 
 fn shafts_mask_key(plan: &FramePlan) -> ProgramKey {
-    ProgramKey::plain("pass/shafts_mask.wgsl").with_flags(plan.ground.is_some().then_some("GROUND"))
+    ProgramKey::plain("pass/shafts_mask.wgsl")
+        .with_flags(plan.ground.is_some().then_some("GROUND"))
+        .with_flags(plan.has_clouds().then_some("CLOUDS"))
 }
 
 impl<'a> Passes<'a> {
@@ -187,7 +201,7 @@ impl<'a> Passes<'a> {
         let (Some(marched), Some(march)) = (&targets.marched, self.plan.march) else {
             return Ok(None);
         };
-        let mut own = vec![("cloud_out", view_of(&marched.light)), ("distance_out", view_of(&marched.distance))];
+        let mut own: Bound<'a> = marched.outputs().collect();
         if let Some(distance) = &targets.ground_distance {
             own.push(("ground_distance", view_of(distance)));
         }
@@ -197,8 +211,14 @@ impl<'a> Passes<'a> {
             own.push(("counters", counters.as_entire_binding()));
         }
         let bound = self.bound(&own);
-        let rays = marched.light.size();
-        self.jobs.extend(self.context.banded("march", &key, &bound, Extent::image(rays))?);
+        let [across, down] = marched.light.size();
+        let block = self.plan.temporal.map_or(1, |pattern| pattern.block()[1]);
+        let (first, end) = (self.plan.cloud_rows.start / block, self.plan.cloud_rows.end.div_ceil(block).min(down));
+        let band = |rows: std::ops::Range<u32>| Extent::image([across, rows.end]).below(rows.start);
+        for rows in [0..first, end..down] {
+            self.jobs.extend(self.context.banded("march", &clear_key(march), &bound, band(rows))?);
+        }
+        self.jobs.extend(self.context.banded("march", &key, &bound, band(first..end))?);
         Ok(Some(marched))
     }
 
@@ -209,11 +229,8 @@ impl<'a> Passes<'a> {
         history: Option<&'a Texture>,
         result: &'a Texture,
     ) -> Result<(), GpuError> {
-        let mut own = vec![
-            ("fresh_cloud", view_of(&fresh.light)),
-            ("fresh_distance", view_of(&fresh.distance)),
-            ("cloud_out", view_of(result)),
-        ];
+        let mut own = vec![("fresh_cloud", view_of(&fresh.light)), ("cloud_out", view_of(result))];
+        own.extend(fresh.distance.iter().map(|distance| ("fresh_distance", view_of(distance))));
         if let Some(history) = history {
             own.push(("history_cloud", view_of(history)));
         }
@@ -225,10 +242,11 @@ impl<'a> Passes<'a> {
 
     /// Streaks of light: mask, then blur; they are added where the picture is composed.
     pub(super) fn sunshafts(&mut self, cloud: Option<&'a Texture>) -> Result<(), GpuError> {
-        let (Some([mask, shafts]), Some(cloud)) = (&self.targets.shafts, cloud) else {
+        let Some([mask, shafts]) = &self.targets.shafts else {
             return Ok(());
         };
-        let mut own = vec![("cloud", view_of(cloud)), ("mask_out", view_of(mask))];
+        let mut own = vec![("mask_out", view_of(mask))];
+        own.extend(cloud.map(|cloud| ("cloud", view_of(cloud))));
         if let Some(distance) = &self.targets.ground_distance {
             own.push(("ground_distance", view_of(distance)));
         }

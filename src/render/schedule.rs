@@ -5,6 +5,7 @@ use std::time::Instant;
 use glam::{UVec2, Vec2, Vec3};
 
 use super::context::{Bound, Context};
+use super::pass::sky::SkyTables;
 use super::passes::{FrameBuffers, Passes};
 use super::samples::jitter_shift;
 use super::targets::{Targets, ray_count};
@@ -85,9 +86,16 @@ impl Renderer {
         let mut jobs = Vec::new();
         // What can be refused comes first: the rest counts as made once it is scheduled.
         self.voxels.read(&self.gpu, scene, plan)?;
-        if !plan.plain {
-            let sky = uniforms::sky_inputs(scene, &Lighting::new(scene));
-            self.sky.update(&self.gpu, &self.programs, &sky, &mut jobs)?;
+        match plan.sky {
+            Some(parts) => {
+                let inputs = uniforms::sky_inputs(scene, parts, &Lighting::new(scene));
+                let sky = match &mut self.sky {
+                    Some(sky) => sky,
+                    none => none.insert(SkyTables::new(&self.gpu)?),
+                };
+                sky.update(&self.gpu, &self.programs, &inputs, &mut jobs)?;
+            }
+            None => self.sky = None,
         }
         self.bakes.update(&context, plan, scene.ground.seed, &mut jobs)?;
         match plan.march.filter(|march| !march.mapless) {
@@ -111,7 +119,7 @@ impl Renderer {
     /// Bakes, sky tables and weather map by the names that shaders give them.
     pub(super) fn shared_resources(&self) -> Bound<'_> {
         let mut shared = self.bakes.resources();
-        shared.extend(self.sky.resources());
+        shared.extend(self.sky.iter().flat_map(SkyTables::resources));
         shared.extend(self.weather.resources());
         shared.extend(self.clearance.resources());
         shared.extend(self.voxels.resources());
@@ -200,7 +208,7 @@ pub(super) fn view_uniforms(
         pixel_point: Vec2::splat(0.5),
         update_checkerboard: u32::from(is_checkerboard),
         pixel_angle,
-        star_radiance: 0.03 / lighting.candela_per_unit,
+        star_radiance: 0.03 * lighting.star_share() / lighting.candela_per_unit,
         sample_share: 1.0,
         sample_angle: pixel_angle,
         pad0: 0.0,

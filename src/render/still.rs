@@ -55,7 +55,7 @@ impl Renderer {
         integrator: Integrator,
         pixel_samples: u32,
     ) -> Result<bool, RenderError> {
-        let plan = FramePlan::for_still(frame, integrator, pixel_samples);
+        let plan = FramePlan::for_still(frame, (integrator, pixel_samples), self.forced);
         let mut is_ready = true;
         for key in super::programs(&plan).iter().chain(&truth::programs_of(&plan, integrator)) {
             is_ready &= self.programs.ready_or_start(key)?;
@@ -69,7 +69,7 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
     pub fn begin_still(&mut self, frame: &Frame<'_>, pixel_samples: u32) -> Result<Still, RenderError> {
-        let plan = FramePlan::for_still(frame, Integrator::Realtime, pixel_samples);
+        let plan = FramePlan::for_still(frame, (Integrator::Realtime, pixel_samples), self.forced);
         let Apart { targets, buffers, samples, candela_per_unit } = self.begin_apart(frame, &plan)?;
         let context = self.context_apart();
         let shared = self.shared_resources();
@@ -196,9 +196,13 @@ pub(super) fn read_back(
         Some(linear) => readback::rgba(gpu, linear)?,
         None => Vec::new(),
     };
-    let (clouds, distance_m) = match &targets.marched {
-        Some(cloud) => (readback::rgba(gpu, &cloud.light)?, readback::scalars(gpu, &cloud.distance)?),
-        None => (vec![[0.0, 0.0, 0.0, 1.0]; rgba.len()], vec![0.0; rgba.len()]),
+    let clouds = match &targets.marched {
+        Some(cloud) => readback::rgba(gpu, &cloud.light)?,
+        None => vec![[0.0, 0.0, 0.0, 1.0]; rgba.len()],
+    };
+    let distance_m = match targets.marched.as_ref().and_then(|cloud| cloud.distance.as_ref()) {
+        Some(distance) => readback::scalars(gpu, distance)?,
+        None => vec![0.0; rgba.len()],
     };
     let image = LinearImage { size: targets.size(), rgba, distance_m, candela_per_unit };
     Ok(TruthPicture { image, clouds, variance: Vec::new() })

@@ -1,5 +1,6 @@
 //! Textures that depend on the size of the picture. Allocated by what the plan calls for; the rest is let go.
 
+use super::passes::view_of;
 use crate::gpu::{Gpu, GpuError, Texture};
 use crate::plan::FramePlan;
 
@@ -12,6 +13,7 @@ struct Shape {
     rays: [u32; 2],
     float: bool,
     clouds: bool,
+    distance: bool,
     temporal: bool,
     ground: bool,
     shafts: bool,
@@ -23,7 +25,20 @@ struct Shape {
 #[derive(Clone, Debug)]
 pub(super) struct CloudTarget {
     pub(super) light: Texture,
-    pub(super) distance: Texture,
+    /// Where anything asks for it.
+    pub(super) distance: Option<Texture>,
+}
+
+impl CloudTarget {
+    /// What writes them, by the names that shaders give them.
+    pub(super) fn outputs(&self) -> impl Iterator<Item = (&'static str, wgpu::BindingResource<'_>)> {
+        let all = [("cloud_out", Some(&self.light)), ("distance_out", self.distance.as_ref())];
+        all.into_iter().filter_map(|(name, texture)| Some((name, view_of(texture?))))
+    }
+
+    fn bytes(&self) -> u64 {
+        self.light.bytes() + self.distance.as_ref().map_or(0, Texture::bytes)
+    }
 }
 
 /// The mean of the samples so far.
@@ -73,7 +88,8 @@ impl Targets {
             size,
             rays: ray_count(plan, size),
             float: plan.float,
-            clouds: plan.march.is_some(),
+            clouds: plan.has_clouds(),
+            distance: plan.march.is_some_and(|march| march.distance),
             temporal: plan.temporal.is_some(),
             ground: plan.ground.is_some(),
             shafts: plan.sunshafts.is_some(),
@@ -92,7 +108,8 @@ impl Targets {
         let image = |label: &str, size: [u32; 2], format| Texture::new_2d(gpu, label, size, format);
         let distance = wgpu::TextureFormat::R32Float;
         let cloud = |label: &str, size| -> Result<CloudTarget, GpuError> {
-            Ok(CloudTarget { light: image(label, size, format)?, distance: image(label, size, distance)? })
+            let distance = shape.distance.then(|| image(label, size, distance)).transpose()?;
+            Ok(CloudTarget { light: image(label, size, format)?, distance })
         };
         let display = |label: &str| image(label, size, wgpu::TextureFormat::Rgba8Unorm);
         let linear = || float.then(|| image("linear", size, wgpu::TextureFormat::Rgba32Float)).transpose();
@@ -131,7 +148,7 @@ impl Targets {
 
     /// Device memory in bytes.
     pub(super) fn bytes(&self) -> u64 {
-        let marched: u64 = self.marched.iter().map(|cloud| cloud.light.bytes() + cloud.distance.bytes()).sum();
+        let marched: u64 = self.marched.iter().map(CloudTarget::bytes).sum();
         let clouds = marched + self.history.iter().flatten().map(Texture::bytes).sum::<u64>();
         let single = [self.ground_distance.as_ref(), self.cloud_shadow.as_ref(), self.linear.as_ref()];
         let single: u64 = single.into_iter().flatten().map(Texture::bytes).sum();

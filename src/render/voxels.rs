@@ -124,7 +124,7 @@ impl Voxels {
             field: field_uniforms(frame),
             map,
             file: self.file.as_ref().map(|file| file.from.clone()),
-            variant: MarchVariant { octaves: 0, air: false, ground: false, float: false, ..march },
+            variant: march.field_alone(),
         };
         if self.baked.as_ref().is_some_and(|baked| baked.from == from) {
             return Ok(());
@@ -191,7 +191,7 @@ impl Renderer {
     /// [`RenderError`] as for [`Self::render`].
     pub fn bake_extinction(&mut self, frame: &Frame<'_>) -> Result<Option<(VoxelGrid, Bounds)>, RenderError> {
         self.finish_interactive()?;
-        let plan = FramePlan::new(frame);
+        let plan = FramePlan::of_clouds(frame);
         let jobs = self.schedule_bakes(frame, &plan, None)?;
         job::run(&self.gpu, &jobs)?;
         let Some(baked) = &self.voxels.baked else { return Ok(None) };

@@ -115,6 +115,16 @@ params! {
     }
 }
 
+impl Phase {
+    /// The formula that this one comes to: without a share of the second lobe there is one.
+    pub fn effective_kind(&self) -> PhaseKind {
+        match self.kind {
+            PhaseKind::TwoLobe if self.back_mix <= 0.0 => PhaseKind::HenyeyGreenstein,
+            kind => kind,
+        }
+    }
+}
+
 impl CloudLayer {
     /// Whether the layer can hold any cloud at all.
     pub fn is_visible(&self) -> bool {

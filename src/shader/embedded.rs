@@ -54,6 +54,7 @@ files! {
     "pass/converged.wgsl",
     "pass/majorant.wgsl",
     "pass/march.wgsl",
+    "pass/march_clear.wgsl",
     "pass/march_state.wgsl",
     "pass/path_state.wgsl",
     "pass/path_trace.wgsl",

@@ -28,6 +28,7 @@ use egui::{Margin, Theme, Ui};
 
 use crate::app::action::Action;
 use crate::app::document::Document;
+use crate::plan::Forced;
 
 /// Below this width of the window the preset list is not opened by itself, in points.
 const WIDE_ENOUGH_FOR_PRESETS: f32 = 1100.0;
@@ -57,6 +58,8 @@ pub struct State {
     pub truth: TruthState,
     /// Measuring.
     pub lab: LabState,
+    /// Effects that run, or do not, whatever the sky calls for: to see what they do.
+    pub forced: Forced,
     /// What a thread is busy with, for the status line.
     pub busy: Option<String>,
 }
@@ -75,6 +78,7 @@ impl Default for State {
             viewport: ViewportState::default(),
             truth: TruthState::default(),
             lab: LabState::default(),
+            forced: Forced::default(),
             busy: None,
         }
     }
@@ -141,7 +145,7 @@ pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Reado
     });
     let area = central.response.rect;
     if state.show_overlay && !state.hide_all {
-        overlay::show(ui.ctx(), area, readout, &mut state.lab);
+        overlay::show(ui.ctx(), area, readout, (&mut state.lab, &mut state.forced));
     }
     if !state.hide_all {
         truth::show(ui.ctx(), area, state);

@@ -3,7 +3,7 @@
 use egui::{Grid, Id, Rect, RichText, ScrollArea, Ui};
 
 use super::LabState;
-use crate::plan::Reason;
+use crate::plan::{Forced, Verdict};
 
 /// One pass with its time.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ pub struct Readout {
     /// 95th percentile of the panels' frame times, in milliseconds.
     pub panel_p95_ms: Option<f64>,
     /// The plan of the last frame.
-    pub reasons: Vec<Reason>,
+    pub verdicts: Vec<Verdict>,
 }
 
 /// Milliseconds for people; what was not measured is never 0.
@@ -45,7 +45,12 @@ fn millis(value: Option<f64>) -> String {
 }
 
 /// Draws the overlay in the upper left corner of `area`.
-pub(super) fn show(context: &egui::Context, area: Rect, readout: &Readout, lab: &mut LabState) {
+pub(super) fn show(
+    context: &egui::Context,
+    area: Rect,
+    readout: &Readout,
+    (lab, forced): (&mut LabState, &mut Forced),
+) {
     let frame = egui::Frame::window(&context.global_style()).inner_margin(8.0);
     let size = egui::vec2((area.width() - 40.0).clamp(120.0, 330.0), (area.height() - 44.0).max(60.0));
     egui::Area::new(Id::unique("timing overlay")).fixed_pos(area.min + egui::vec2(10.0, 10.0)).show(context, |ui| {
@@ -54,7 +59,7 @@ pub(super) fn show(context: &egui::Context, area: Rect, readout: &Readout, lab: 
             ui.set_max_height(size.y);
             ScrollArea::vertical().max_height(size.y).max_width(size.x).show(ui, |ui| {
                 ui.set_width(size.x);
-                contents(ui, readout);
+                contents(ui, readout, forced);
                 ui.add_space(6.0);
                 let measure = ui.button("Measure…").on_hover_text("The table of the thesis, and other sets (F9)");
                 super::row::name(ui, &measure, "Measure", "overlay.measure");
@@ -66,7 +71,7 @@ pub(super) fn show(context: &egui::Context, area: Rect, readout: &Readout, lab: 
     });
 }
 
-fn contents(ui: &mut Ui, readout: &Readout) {
+fn contents(ui: &mut Ui, readout: &Readout, forced: &mut Forced) {
     ui.spacing_mut().item_spacing.y = 2.0;
     ui.strong("Time per picture");
     ui.weak(match readout.frames {
@@ -99,14 +104,47 @@ fn contents(ui: &mut Ui, readout: &Readout) {
     });
     ui.add(egui::Label::new(RichText::new(&readout.adapter).weak()).wrap());
     ui.add_space(6.0);
-    ui.strong("Plan");
-    if readout.reasons.is_empty() {
+    ui.horizontal(|ui| {
+        ui.strong("Effects");
+        if !forced.is_empty() {
+            let reset = ui.small_button("As planned").on_hover_text("Leave all effects to the plan again");
+            super::row::name(ui, &reset, "As planned", "overlay.as_planned");
+            if reset.clicked() {
+                *forced = Forced::default();
+            }
+        }
+    });
+    if readout.verdicts.is_empty() {
         ui.weak("None yet");
     }
-    for reason in &readout.reasons {
-        let mark = if reason.runs { "●" } else { "–" };
-        let text = format!("{mark} {}: {}", reason.effect, reason.because);
-        let text = if reason.runs { RichText::new(text) } else { RichText::new(text).weak() };
-        ui.add(egui::Label::new(text).wrap());
+    for verdict in &readout.verdicts {
+        effect(ui, verdict, forced);
+    }
+}
+
+/// One effect: whether it runs and why. A click forces it the other way, another one leaves it to the plan again.
+fn effect(ui: &mut Ui, verdict: &Verdict, forced: &mut Forced) {
+    let text = RichText::new(verdict.line());
+    let text = match (verdict.is_forced(), verdict.runs) {
+        (true, _) => text.color(ui.visuals().warn_fg_color),
+        (false, true) => text,
+        (false, false) => text.weak(),
+    };
+    let info = verdict.effect.info();
+    if !verdict.can_be_forced() {
+        ui.add(egui::Label::new(text).wrap()).on_hover_text(info.does);
+        return;
+    }
+    let label = ui.add(egui::Label::new(text).wrap().sense(egui::Sense::click()));
+    let hint = match (verdict.is_forced(), verdict.runs) {
+        (true, _) => "Click to leave it to the plan again.",
+        (false, true) => "Click to force it off.",
+        (false, false) => "Click to force it on.",
+    };
+    let label = label.on_hover_text(format!("{} {hint}", info.does)).on_hover_cursor(egui::CursorIcon::PointingHand);
+    super::row::name(ui, &label, info.name, &format!("overlay.effect.{}", info.name));
+    if label.clicked() {
+        let force = if verdict.is_forced() { None } else { Some(!verdict.runs) };
+        *forced = forced.with(verdict.effect, force);
     }
 }

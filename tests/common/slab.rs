@@ -178,7 +178,7 @@ impl March {
             bound.extend(Field::baked().noises());
         }
         let key = ProgramKey::plain("pass/march.wgsl")
-            .with_flags(self.flags.iter().copied().chain(["FLOAT"]))
+            .with_flags(self.flags.iter().copied().chain(["FLOAT", "DISTANCE"]).chain(LIGHT_FLAGS))
             .with_constant("DOMAIN", self.domain)
             .with_constant("LAYERS", self.layers)
             .with_constant("OCTAVES", 0);
@@ -189,6 +189,10 @@ impl March {
         }
     }
 }
+
+/// All light there is, scattered by any phase function.
+pub(crate) const LIGHT_FLAGS: [&str; 7] =
+    ["LIT", "AMBIENT", "PHASE_ONE_LOBE", "PHASE_TWO_LOBES", "PHASE_CORNETTE_SHANKS", "PHASE_SCHLICK", "PHASE_RAYLEIGH"];
 
 /// Closed form S9 of a slab cut into equal cells that are read in their middle, for isotropic light of irradiance 4π.
 pub(crate) fn slab_light(tau: f64, cells: u32, (mu, mu0): (f64, f64), up: bool) -> f64 {

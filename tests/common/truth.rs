@@ -9,7 +9,7 @@ use nephoscope::render::uniforms::other::TruthUniforms;
 
 use super::field::{Bound, Field, linear_repeat, plain, run, scalars, view_of};
 use super::gpu;
-use super::slab::{March, no_air};
+use super::slab::{LIGHT_FLAGS, March, no_air};
 
 /// Pixels along each side. All rays of one run take the same direction.
 pub(crate) const SIDE: u32 = 32;
@@ -89,7 +89,7 @@ impl March {
 
     fn key(&self, file: &'static str) -> ProgramKey {
         ProgramKey::plain(file)
-            .with_flags(self.flags.iter().copied())
+            .with_flags(self.flags.iter().copied().chain(LIGHT_FLAGS))
             .with_constant("DOMAIN", self.domain)
             .with_constant("LAYERS", self.layers)
     }

@@ -3,6 +3,7 @@
 use nephoscope::lab::accuracy::{Axis, settings};
 use nephoscope::lab::bench::{Case, Measurement, Rounds};
 use nephoscope::lab::sweep::{At, Plan, Sweep};
+use nephoscope::plan::Forced;
 use nephoscope::plan::Integrator;
 use nephoscope::render::truth::Goal;
 use nephoscope::scene::{Quality, Scene};
@@ -65,6 +66,7 @@ fn a_measurement_goes_on_where_it_was_left() {
         scene: Scene::default(),
         quality: Quality { light_steps, ..quick() },
         size: [16, 9],
+        forced: Forced::default(),
     };
     let cases = vec![case("a", 1), case("b", 2)];
     let mut measurement = Measurement::new(cases, Rounds { warm_up: 1, rounds: 2, frames: 1 });

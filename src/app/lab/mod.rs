@@ -78,7 +78,7 @@ impl Lab {
     fn start(&mut self, order: Order, (gpu, preset): (&Gpu, &Preset), proxy: &EventLoopProxy<Event>) -> LabView {
         let name = match &order {
             Order::Sweep { .. } => preset.name.clone(),
-            Order::Suite(kind, _) => kind.title().to_owned(),
+            Order::Suite(kind, ..) => kind.title().to_owned(),
         };
         let job = Job { gpu: gpu.clone(), name: name.clone(), scene: preset.scene.clone(), order };
         self.generation += 1;

@@ -8,8 +8,10 @@ use super::write_textures;
 use crate::app::action::Order;
 use crate::gpu::{Gpu, TimingSource};
 use crate::lab::accuracy;
+use crate::lab::bench::Case;
 use crate::lab::suite::Suite;
 use crate::lab::sweep::{At, Plan, Sweep};
+use crate::plan::Forced;
 use crate::render::Renderer;
 use crate::scene::Scene;
 use crate::scene::param::Choice as _;
@@ -17,6 +19,9 @@ use crate::ui::{LabView, Measured, Phase};
 
 /// How often the panel hears of progress at most; drawing it takes time from what is measured on a processor.
 const REPORT: Duration = Duration::from_millis(700);
+
+/// Size of the pictures in which the effects of a sky are measured.
+const SIZE: [u32; 2] = [480, 270];
 
 /// What the window wants of the thread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -168,7 +173,10 @@ fn measure(job: Job, control: &Control, tell: &dyn Fn(LabView)) -> anyhow::Resul
         Order::Sweep { settings, goals, size, rounds } => {
             Running::Sweep(Box::new(Sweep::new(Plan { scene, size, settings, goals, rounds, seeds: 1 })))
         }
-        Order::Suite(kind, rounds) => Running::Suite(Suite::new(kind, rounds, &write_textures(folder.path())?)),
+        Order::Suite(kind, rounds, quality) => {
+            let sky = Case { name: name.clone(), scene, quality: *quality, size: SIZE, forced: Forced::default() };
+            Running::Suite(Suite::new(kind, rounds, &write_textures(folder.path())?, &[sky]))
+        }
     };
     tell(running.view(&name, Phase::Running, source));
     let mut told = Instant::now();

@@ -47,6 +47,24 @@ pub struct SkyInputs {
     pub eye_altitude_m: f32,
     /// Altitude of the clouds in metres, for which ambient light is computed.
     pub cloud_altitude_m: f32,
+    /// Which tables are made, and whether the air scatters moonlight.
+    pub parts: SkyParts,
+}
+
+/// What of the sky a scene calls for beside its light in all directions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SkyParts {
+    /// The table of the air before every distance.
+    pub air: bool,
+    /// The table of mean radiances.
+    pub light: bool,
+    /// Whether the air scatters moonlight.
+    pub moonlit: bool,
+}
+
+impl SkyParts {
+    /// Everything.
+    pub const ALL: Self = Self { air: true, light: true, moonlit: true };
 }
 
 impl Default for SkyInputs {
@@ -67,6 +85,7 @@ impl Default for SkyInputs {
             night_glow: Vec3::ZERO,
             eye_altitude_m: 2.0,
             cloud_altitude_m: 1500.0,
+            parts: SkyParts::ALL,
         }
     }
 }
@@ -143,13 +162,14 @@ impl SkyInputs {
     }
 
     fn same_view(&self, other: &Self) -> bool {
-        *self == Self { cloud_altitude_m: self.cloud_altitude_m, ..*other }
+        let parts = SkyParts { moonlit: other.parts.moonlit, ..self.parts };
+        *self == Self { cloud_altitude_m: self.cloud_altitude_m, parts, ..*other }
     }
 }
 
 /// The shaders of this pass, in the order they run.
-pub fn programs() -> Vec<ProgramKey> {
-    BAKES.iter().map(|bake| ProgramKey::plain(bake.file)).collect()
+pub fn programs(parts: SkyParts) -> Vec<ProgramKey> {
+    BAKES.iter().filter(|bake| (bake.is_wanted)(parts)).map(|bake| bake.key(parts)).collect()
 }
 
 /// One table: its pass name, its shader, how many workgroups fill it.
@@ -159,6 +179,15 @@ struct Bake {
     grid: [u32; 3],
     /// Whether what it was made from is unchanged.
     is_current: fn(&SkyInputs, &SkyInputs) -> bool,
+    is_wanted: fn(SkyParts) -> bool,
+    /// Whether it sums light of sun and moon.
+    is_lit: bool,
+}
+
+impl Bake {
+    fn key(&self, parts: SkyParts) -> ProgramKey {
+        ProgramKey::plain(self.file).with_flags((self.is_lit && parts.moonlit).then_some("MOONLIT"))
+    }
 }
 
 const fn tiles([width, height]: [u32; 2]) -> [u32; 3] {
@@ -172,21 +201,44 @@ const BAKES: [Bake; 5] = [
         file: "pass/sky_transmittance.wgsl",
         grid: tiles(TRANSMITTANCE_SIZE),
         is_current: SkyInputs::same_air,
+        is_wanted: |_| true,
+        is_lit: false,
     },
     Bake {
         pass: "sky_multiscatter",
         file: "pass/sky_multiscatter.wgsl",
         grid: tiles(MULTISCATTER_SIZE),
         is_current: SkyInputs::same_multiscatter,
+        is_wanted: |_| true,
+        is_lit: false,
     },
-    Bake { pass: "sky_view", file: "pass/sky_view.wgsl", grid: tiles(VIEW_SIZE), is_current: SkyInputs::same_view },
+    Bake {
+        pass: "sky_view",
+        file: "pass/sky_view.wgsl",
+        grid: tiles(VIEW_SIZE),
+        is_current: SkyInputs::same_view,
+        is_wanted: |_| true,
+        is_lit: true,
+    },
     Bake {
         pass: "sky_aerial",
         file: "pass/sky_aerial.wgsl",
         grid: tiles([AERIAL_SIZE[0], AERIAL_SIZE[1]]),
         is_current: SkyInputs::same_view,
+        is_wanted: |parts| parts.air,
+        is_lit: true,
     },
-    Bake { pass: "sky_ambient", file: "pass/sky_ambient.wgsl", grid: [1, 1, 1], is_current: SkyInputs::eq },
+    Bake {
+        pass: "sky_ambient",
+        file: "pass/sky_ambient.wgsl",
+        grid: [1, 1, 1],
+        is_current: |baked, wanted| {
+            let parts = SkyParts { air: wanted.parts.air, ..baked.parts };
+            SkyInputs { parts, ..*baked } == *wanted
+        },
+        is_wanted: |parts| parts.light,
+        is_lit: true,
+    },
 ];
 
 /// The tables of the clear sky and what they were made from.
@@ -198,12 +250,10 @@ pub struct SkyTables {
     pub multiscatter: Texture,
     /// Radiance of the sky in all directions; 256×144.
     pub view: Texture,
-    /// Light of the air in front of a distance; 48×40×32.
-    pub aerial_light: Texture,
-    /// Transmittance of the air in front of a distance; 48×40×32.
-    pub aerial_transmittance: Texture,
-    /// Four mean radiances; 4×1, see `shaders/pass/sky_ambient.wgsl`.
-    pub ambient: Texture,
+    /// Light and transmittance of the air in front of a distance, where they are called for; 48×40×32.
+    pub aerial: Option<[Texture; 2]>,
+    /// Four mean radiances, where they are called for; 4×1, see `shaders/pass/sky_ambient.wgsl`.
+    pub ambient: Option<Texture>,
     air: wgpu::Buffer,
     linear_repeat: wgpu::Sampler,
     baked: Option<SkyInputs>,
@@ -220,9 +270,8 @@ impl SkyTables {
             transmittance: Texture::new_2d(gpu, "sky_transmittance", TRANSMITTANCE_SIZE, half)?,
             multiscatter: Texture::new_2d(gpu, "sky_multiscatter", MULTISCATTER_SIZE, half)?,
             view: Texture::new_2d(gpu, "sky_view", VIEW_SIZE, half)?,
-            aerial_light: Texture::new_3d(gpu, "sky_aerial_light", AERIAL_SIZE, (1, half)),
-            aerial_transmittance: Texture::new_3d(gpu, "sky_aerial_transmittance", AERIAL_SIZE, (1, half)),
-            ambient: Texture::new_2d(gpu, "sky_ambient", [4, 1], wgpu::TextureFormat::Rgba32Float)?,
+            aerial: None,
+            ambient: None,
             air: gpu.uniform("air", bytemuck::bytes_of(&SkyInputs::default().uniforms())),
             linear_repeat: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("linear_repeat"),
@@ -254,18 +303,36 @@ impl SkyTables {
         if self.baked == Some(wanted) {
             return Ok(());
         }
+        self.allocate(gpu, wanted.parts)?;
         // A new buffer, because jobs that were not submitted yet still hold the old one.
         self.air = gpu.uniform("air", bytemuck::bytes_of(&wanted.uniforms()));
         let mut bakes = Vec::new();
-        for bake in &BAKES {
-            if self.baked.is_some_and(|baked| (bake.is_current)(&baked, &wanted)) {
+        for bake in BAKES.iter().filter(|bake| (bake.is_wanted)(wanted.parts)) {
+            let was_wanted = self.baked.is_some_and(|baked| (bake.is_wanted)(baked.parts));
+            if was_wanted && self.baked.is_some_and(|baked| (bake.is_current)(&baked, &wanted)) {
                 continue;
             }
-            let program = programs.get(&ProgramKey::plain(bake.file))?;
+            let program = programs.get(&bake.key(wanted.parts))?;
             bakes.push(program.job(gpu, bake.pass, &self.bake_resources(), bake.grid)?);
         }
         jobs.append(&mut bakes);
         self.baked = Some(wanted);
+        Ok(())
+    }
+
+    /// Holds what is called for and lets go of the rest.
+    fn allocate(&mut self, gpu: &Gpu, parts: SkyParts) -> Result<(), GpuError> {
+        let aerial = |label| Texture::new_3d(gpu, label, AERIAL_SIZE, (1, wgpu::TextureFormat::Rgba16Float));
+        if !parts.air {
+            self.aerial = None;
+        } else if self.aerial.is_none() {
+            self.aerial = Some(["sky_aerial_light", "sky_aerial_transmittance"].map(aerial));
+        }
+        if !parts.light {
+            self.ambient = None;
+        } else if self.ambient.is_none() {
+            self.ambient = Some(Texture::new_2d(gpu, "sky_ambient", [4, 1], wgpu::TextureFormat::Rgba32Float)?);
+        }
         Ok(())
     }
 
@@ -288,49 +355,62 @@ impl SkyTables {
         resources.retain(|(name, _)| !matches!(*name, "air" | "sky_view_out"));
         resources.push(("air", air.as_entire_binding()));
         resources.push(("sky_view_out", wgpu::BindingResource::TextureView(&view.view)));
-        let program = programs.get(&ProgramKey::plain("pass/sky_view.wgsl"))?;
+        let moonlit = inputs.parts.moonlit.then_some("MOONLIT");
+        let program = programs.get(&ProgramKey::plain("pass/sky_view.wgsl").with_flags(moonlit))?;
         let job = program.job(gpu, "sky_view", &resources, tiles(VIEW_SIZE))?;
         Ok((view, air, job))
     }
 
     /// Device memory in bytes.
     pub fn bytes(&self) -> u64 {
-        let tables = [
-            &self.transmittance,
-            &self.multiscatter,
-            &self.view,
-            &self.aerial_light,
-            &self.aerial_transmittance,
-            &self.ambient,
-        ];
-        tables.into_iter().map(Texture::bytes).sum()
+        let tables = [&self.transmittance, &self.multiscatter, &self.view];
+        let optional = self.aerial.iter().flatten().chain(&self.ambient);
+        tables.into_iter().chain(optional).map(Texture::bytes).sum()
     }
 
     /// The tables and the uniform `air` they go with, under the names that shaders give them.
     pub fn resources(&self) -> Vec<(&'static str, wgpu::BindingResource<'_>)> {
-        vec![
-            ("air", self.air.as_entire_binding()),
-            ("sky_transmittance", wgpu::BindingResource::TextureView(&self.transmittance.view)),
-            ("sky_multiscatter", wgpu::BindingResource::TextureView(&self.multiscatter.view)),
-            ("sky_view", wgpu::BindingResource::TextureView(&self.view.view)),
-            ("sky_aerial_light", wgpu::BindingResource::TextureView(&self.aerial_light.view)),
-            ("sky_aerial_transmittance", wgpu::BindingResource::TextureView(&self.aerial_transmittance.view)),
-            ("sky_ambient", wgpu::BindingResource::TextureView(&self.ambient.view)),
-        ]
+        let mut resources = vec![("air", self.air.as_entire_binding())];
+        resources.extend(self.tables([
+            "sky_transmittance",
+            "sky_multiscatter",
+            "sky_view",
+            "sky_aerial_light",
+            "sky_aerial_transmittance",
+            "sky_ambient",
+        ]));
+        resources
+    }
+
+    /// The tables that exist, under names of one's own.
+    fn tables<'a>(
+        &'a self,
+        names: [&'static str; 6],
+    ) -> impl Iterator<Item = (&'static str, wgpu::BindingResource<'a>)> {
+        let [light, transmittance] = match &self.aerial {
+            Some([light, transmittance]) => [Some(light), Some(transmittance)],
+            None => [None, None],
+        };
+        let always = [&self.transmittance, &self.multiscatter, &self.view].map(Some);
+        let tables = always.into_iter().chain([light, transmittance, self.ambient.as_ref()]);
+        names
+            .into_iter()
+            .zip(tables)
+            .filter_map(|(name, table)| Some((name, wgpu::BindingResource::TextureView(&table?.view))))
     }
 
     /// What the bakes read and write. Each shader binds a table either as a texture or, as `…_out`, as storage.
     fn bake_resources(&self) -> Vec<(&'static str, wgpu::BindingResource<'_>)> {
         let mut resources = self.resources();
-        resources.extend([
-            ("linear_repeat", wgpu::BindingResource::Sampler(&self.linear_repeat)),
-            ("sky_transmittance_out", wgpu::BindingResource::TextureView(&self.transmittance.view)),
-            ("sky_multiscatter_out", wgpu::BindingResource::TextureView(&self.multiscatter.view)),
-            ("sky_view_out", wgpu::BindingResource::TextureView(&self.view.view)),
-            ("sky_aerial_light_out", wgpu::BindingResource::TextureView(&self.aerial_light.view)),
-            ("sky_aerial_transmittance_out", wgpu::BindingResource::TextureView(&self.aerial_transmittance.view)),
-            ("sky_ambient_out", wgpu::BindingResource::TextureView(&self.ambient.view)),
-        ]);
+        resources.push(("linear_repeat", wgpu::BindingResource::Sampler(&self.linear_repeat)));
+        resources.extend(self.tables([
+            "sky_transmittance_out",
+            "sky_multiscatter_out",
+            "sky_view_out",
+            "sky_aerial_light_out",
+            "sky_aerial_transmittance_out",
+            "sky_ambient_out",
+        ]));
         resources
     }
 }

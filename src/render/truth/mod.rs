@@ -18,6 +18,7 @@ use super::pass::sky::SkyInputs;
 use super::passes::{FrameBuffers, Passes, field_key, view_of};
 use super::samples::PixelSamples;
 use super::still::{Apart, read_back};
+use super::targets::CloudTarget;
 use super::targets::Targets;
 use super::uniforms;
 use super::{LinearImage, RenderError, Renderer};
@@ -108,7 +109,7 @@ impl Renderer {
     /// [`RenderError`] as for [`Self::render`].
     pub fn begin_truth(&mut self, frame: &Frame<'_>, goal: Goal, pixel_samples: u32) -> Result<Truth, RenderError> {
         let integrator = goal.integrator();
-        let plan = FramePlan::for_still(frame, integrator, pixel_samples);
+        let plan = FramePlan::for_still(frame, (integrator, pixel_samples), self.forced);
         let Apart { targets, buffers, samples, candela_per_unit } = self.begin_apart(frame, &plan)?;
         let context = self.context_apart();
         let shared = self.shared_resources();
@@ -148,9 +149,9 @@ impl Renderer {
             plan,
             targets,
         };
-        if let Some(march) = truth.plan.march {
-            let inputs = uniforms::sky_inputs(frame.scene, &Lighting::new(frame.scene));
-            self.add_clouds(&mut truth, march, &buffers, &inputs)?;
+        if let Some(march) = truth.plan.march.filter(|_| truth.plan.has_clouds()) {
+            let sky = truth.plan.sky.map(|sky| uniforms::sky_inputs(frame.scene, sky, &Lighting::new(frame.scene)));
+            self.add_clouds(&mut truth, march, &buffers, sky.as_ref())?;
         }
         Ok(truth)
     }
@@ -161,7 +162,7 @@ impl Renderer {
         truth: &mut Truth,
         march: MarchVariant,
         buffers: &FrameBuffers,
-        sky: &SkyInputs,
+        sky: Option<&SkyInputs>,
     ) -> Result<(), RenderError> {
         let gpu = &self.gpu;
         let mut bound = self.shared_resources();
@@ -170,8 +171,8 @@ impl Renderer {
         if truth.integrator == Integrator::PathTraced {
             truth.variance =
                 Some(Texture::new_2d(gpu, "variance", truth.targets.size(), wgpu::TextureFormat::Rgba32Float)?);
-            if !march.plain {
-                let (view, air, job) = self.sky.seen_from(gpu, &self.programs, sky, sky.cloud_altitude_m)?;
+            if let (Some(tables), Some(sky)) = (&self.sky, sky) {
+                let (view, air, job) = tables.seen_from(gpu, &self.programs, sky, sky.cloud_altitude_m)?;
                 truth.prepare.push_back(job);
                 seen = Some((view, air));
             }
@@ -183,11 +184,8 @@ impl Renderer {
         if let Some(distance) = &truth.targets.ground_distance {
             bound.push(("ground_distance", view_of(distance)));
         }
-        let resolved = truth.targets.marched.as_ref().map(|cloud| (&cloud.light, &cloud.distance));
         let mut outputs = vec![("background", view_of(&truth.targets.background))];
-        if let Some((light, distance)) = resolved {
-            outputs.extend([("cloud_out", view_of(light)), ("distance_out", view_of(distance))]);
-        }
+        outputs.extend(truth.targets.marched.iter().flat_map(CloudTarget::outputs));
         if let Some(variance) = &truth.variance {
             outputs.push(("variance_out", view_of(variance)));
         }
@@ -209,7 +207,7 @@ impl Renderer {
 
 /// The program of an integrator.
 fn program(integrator: Integrator, march: MarchVariant) -> ProgramKey {
-    let flags = march.flags().filter(|flag| !matches!(*flag, "FLOAT" | "SKIP"));
+    let flags = march.flags().filter(|flag| !matches!(*flag, "FLOAT" | "SKIP" | "DISTANCE"));
     if integrator == Integrator::PathTraced {
         field_key("pass/path_trace.wgsl", march).with_flags(flags).with_flags((!march.plain).then_some("EARTH"))
     } else {
@@ -219,7 +217,7 @@ fn program(integrator: Integrator, march: MarchVariant) -> ProgramKey {
 
 fn resolve_program(integrator: Integrator, march: MarchVariant) -> ProgramKey {
     ProgramKey::plain("pass/truth_resolve.wgsl")
-        .with_flags(march.float.then_some("FLOAT"))
+        .with_flags(march.flags().filter(|flag| matches!(*flag, "FLOAT" | "DISTANCE")))
         .with_flags((integrator == Integrator::PathTraced).then_some("PATHS"))
 }
 
@@ -230,7 +228,7 @@ pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
 
 /// The same for one integrator; none for the march itself.
 pub(super) fn programs_of(plan: &FramePlan, integrator: Integrator) -> Vec<ProgramKey> {
-    let march = plan.march.filter(|_| integrator != Integrator::Realtime);
+    let march = plan.march.filter(|_| integrator != Integrator::Realtime && plan.has_clouds());
     march.map_or_else(Vec::new, |march| vec![program(integrator, march), resolve_program(integrator, march)])
 }
 

@@ -122,7 +122,7 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
             DensityModel::Texture => 3,
             DensityModel::Grid => 4,
         },
-        phase_kind: match layer.phase.kind {
+        phase_kind: match layer.phase.effective_kind() {
             PhaseKind::Isotropic => 0,
             PhaseKind::HenyeyGreenstein => 1,
             PhaseKind::TwoLobe => 2,
@@ -179,6 +179,7 @@ pub(crate) fn field_uniforms(frame: &Frame<'_>) -> SceneUniforms {
         towards_moon: Vec3::Y,
         sun_lux: Vec3::ZERO,
         moon_lux: Vec3::ZERO,
+        daylight_lux: 0.0,
         candela_per_unit: 1.0,
     };
     scene_uniforms(&field, &dark, &Eye::new(&origin))

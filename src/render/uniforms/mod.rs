@@ -15,13 +15,13 @@ pub(super) use camera::{Eye, camera_uniforms};
 pub(super) use clouds::{field_uniforms, plain_sky, scene_uniforms, wind_mps};
 pub(super) use ground::ground_uniforms;
 
-use super::pass::sky::SkyInputs;
-use crate::plan::Lighting;
+use super::pass::sky::{SkyInputs, SkyParts};
+use crate::plan::{Lighting, SkyPlan};
 use crate::scene::Scene;
 use other::{DisplayUniforms, ShaftUniforms};
 
 /// What the sky tables are made from.
-pub(super) fn sky_inputs(scene: &Scene, lighting: &Lighting) -> SkyInputs {
+pub(super) fn sky_inputs(scene: &Scene, plan: SkyPlan, lighting: &Lighting) -> SkyInputs {
     let per_unit = 1.0 / lighting.candela_per_unit;
     let clouds = scene.visible_layers().next();
     let glow = glam::Vec3::new(0.75, 0.95, 1.3) * scene.moon.night_glow;
@@ -40,6 +40,7 @@ pub(super) fn sky_inputs(scene: &Scene, lighting: &Lighting) -> SkyInputs {
         night_glow: glow * per_unit,
         eye_altitude_m: scene.camera.height_m,
         cloud_altitude_m: clouds.map_or(1500.0, |layer| layer.base_m),
+        parts: SkyParts { air: plan.air, light: plan.light, moonlit: plan.moonlit },
     }
 }
 
@@ -98,7 +99,7 @@ pub(super) fn shaft_uniforms(scene: &Scene, lighting: &Lighting, samples: u32) -
     ShaftUniforms {
         towards_light: lighting.towards_key,
         length_rad: scene.sunshafts.length_deg.to_radians(),
-        light: light * warm * scene.sunshafts.strength * 0.035,
+        light: light * warm * scene.sunshafts.strength * 0.035 * lighting.streak_share(),
         samples,
     }
 }

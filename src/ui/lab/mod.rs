@@ -178,8 +178,11 @@ fn contents(ui: &mut Ui, state: &mut LabState, document: &Document, actions: &mu
         }
     });
     ui.separator();
-    let order =
-        if state.shows_suites { suite_form(ui, state) } else { sweep::show(ui, &mut state.form, document.quality()) };
+    let order = if state.shows_suites {
+        suite_form(ui, state, document.quality())
+    } else {
+        sweep::show(ui, &mut state.form, document.quality())
+    };
     ui.add_space(4.0);
     let wishes = progress(ui, &state.view, order);
     actions.extend(wishes.into_iter().map(|wish| Action::Ask(Request::Lab(wish))));
@@ -187,7 +190,7 @@ fn contents(ui: &mut Ui, state: &mut LabState, document: &Document, actions: &mu
 }
 
 /// What a fixed set is to be like.
-fn suite_form(ui: &mut Ui, state: &mut LabState) -> Result<Order, String> {
+fn suite_form(ui: &mut Ui, state: &mut LabState, quality: &Quality) -> Result<Order, String> {
     ui.horizontal_wrapped(|ui| {
         for kind in SuiteKind::ALL {
             let chosen = ui.selectable_label(state.suite == *kind, kind.title()).on_hover_text(kind.doc().trim());
@@ -199,7 +202,8 @@ fn suite_form(ui: &mut Ui, state: &mut LabState) -> Result<Order, String> {
         rounds(ui, &mut state.rounds);
     });
     ui.weak("It has skies and sizes of its own, and takes many minutes without a graphics card.");
-    Ok(Order::Suite(state.suite, Rounds { warm_up: 1, rounds: state.rounds, frames: 1 }))
+    let rounds = Rounds { warm_up: 1, rounds: state.rounds, frames: 1 };
+    Ok(Order::Suite(state.suite, rounds, Box::new(quality.clone())))
 }
 
 fn rounds(ui: &mut Ui, rounds: &mut u32) {

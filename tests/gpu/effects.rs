@@ -1,0 +1,497 @@
+//! The two proofs of every effect, over the plan's own list: what does not run leaves no trace, and leaving it out where
+//! the plan calls it needless does not change the picture; and a scene in which it does.
+
+use std::collections::BTreeSet;
+
+use nephoscope::gpu::readback;
+use nephoscope::lab::verify::anywhere;
+use nephoscope::plan::{Effect, Forced, FramePlan, Need};
+use nephoscope::render::{programs, shaders::TABLE};
+use nephoscope::scene::builtin::BUILTINS;
+use nephoscope::scene::{
+    DensityModel, DomainKind, FieldOfViewAxis, MapEdge, MapSource, Output, PhaseKind, Quality, Scene, UpdateFraction,
+};
+
+use crate::common::sky::{frame, quick, renderer};
+
+const SIZE: [u32; 2] = [48, 27];
+
+#[derive(Clone)]
+struct Setup {
+    scene: Scene,
+    quality: Quality,
+    output: Output,
+}
+
+type Change = fn(&mut Setup);
+
+impl Setup {
+    fn new(change: Change) -> Self {
+        let mut scene = Scene::default();
+        scene.weather.coverage = 0.6;
+        let mut setup = Self { scene, quality: quick(), output: Output::Linear };
+        change(&mut setup);
+        setup
+    }
+
+    fn plan(&self, forced: Forced) -> FramePlan {
+        FramePlan::forced(&frame(&self.scene, &self.quality, SIZE, self.output), forced)
+    }
+
+    fn all_layers(&mut self, change: impl Fn(&mut nephoscope::scene::CloudLayer)) {
+        self.scene.layers.iter_mut().for_each(change);
+    }
+
+    /// A camera that looks at a place in the sky.
+    fn look(&mut self, elevation_deg: f32, azimuth_deg: f32) {
+        self.scene.camera.pitch_deg = elevation_deg;
+        self.scene.camera.heading_deg = azimuth_deg;
+    }
+}
+
+/// Scenes that tell about one effect.
+struct Example {
+    /// Calls for it.
+    on: Change,
+    /// Does not.
+    off: Change,
+    /// Could have it and would not look different.
+    needless: &'static [Change],
+    /// Whether the first one looks different without it.
+    is_seen: bool,
+}
+
+const fn example(on: Change, off: Change, needless: &'static [Change], is_seen: bool) -> Example {
+    Example { on, off, needless, is_seen }
+}
+
+fn base(_: &mut Setup) {}
+
+fn night(s: &mut Setup) {
+    s.scene.sun.elevation_deg = -30.0;
+    s.scene.display.exposure_ev = -4.0;
+}
+
+fn at_the_sun(s: &mut Setup) {
+    s.scene.weather.coverage = 0.0;
+    let sun = s.scene.sun.clone();
+    s.scene.camera.field_of_view_deg = 20.0;
+    s.look(sun.elevation_deg, sun.azimuth_deg);
+}
+
+fn away_from_the_sun(s: &mut Setup) {
+    s.look(10.0, s.scene.sun.azimuth_deg + 180.0);
+}
+
+fn at_the_moon(s: &mut Setup) {
+    night(s);
+    s.scene.weather.coverage = 0.0;
+    let moon = s.scene.moon.clone();
+    s.scene.camera.field_of_view_deg = 20.0;
+    s.look(moon.elevation_deg, moon.azimuth_deg);
+}
+
+fn away_from_the_moon(s: &mut Setup) {
+    night(s);
+    s.look(10.0, s.scene.moon.azimuth_deg + 180.0);
+}
+
+fn mountains(s: &mut Setup) {
+    (s.scene.ground.mountains_m, s.scene.camera.pitch_deg) = (2000.0, 2.0);
+}
+
+fn no_relief(s: &mut Setup) {
+    (s.scene.ground.hills_m, s.scene.ground.mountains_m) = (0.0, 0.0);
+}
+
+fn looking_down(s: &mut Setup) {
+    (s.scene.camera.pitch_deg, s.scene.camera.height_m) = (-50.0, 900.0);
+    s.scene.weather.coverage = 0.4;
+}
+
+fn texture(s: &mut Setup) {
+    s.all_layers(|layer| layer.model = DensityModel::Texture);
+    s.scene.weather.layers.iter_mut().for_each(|map| map.source = MapSource::WeatherTexture);
+}
+
+fn boxed(s: &mut Setup) {
+    s.scene.domain.kind = DomainKind::Box;
+    s.quality.grid_voxels = 32;
+}
+
+fn one_lobe(s: &mut Setup) {
+    s.all_layers(|layer| layer.phase.kind = PhaseKind::HenyeyGreenstein);
+}
+
+fn low_sun(s: &mut Setup) {
+    s.scene.sunshafts.strength = 1.0;
+    (s.scene.sun.elevation_deg, s.scene.sun.azimuth_deg) = (8.0, 90.0);
+    s.look(8.0, 90.0);
+}
+
+fn partial(s: &mut Setup) {
+    (s.quality.update, s.output) = (UpdateFraction::Quarter, Output::Display);
+}
+
+fn shown(s: &mut Setup) {
+    s.output = Output::Display;
+}
+
+/// Every effect has its scenes here, or this does not compile.
+#[allow(clippy::too_many_lines, reason = "a table")]
+fn scenes(effect: Effect) -> Example {
+    match effect {
+        Effect::SkyTables => example(base, |s| s.scene.plain_light.enabled = true, &[], false),
+        Effect::AirTable => {
+            const OFF: Change = |s| (s.scene.ground.visible, s.scene.air.aerial_perspective) = (false, false);
+            example(base, OFF, &[OFF], false)
+        }
+        Effect::SkyLightTable => {
+            const OFF: Change = |s| (s.scene.ground.visible, s.scene.scattering.ambient) = (false, 0.0);
+            example(base, OFF, &[OFF], false)
+        }
+        Effect::MoonlitAir => {
+            example(night, base, &[base, |s| (s.scene.moon.enabled, s.scene.sun.elevation_deg) = (false, -30.0)], true)
+        }
+        Effect::SunDisc => {
+            const SET: Change = |s| {
+                s.scene.sun.elevation_deg = -2.0;
+                s.look(3.0, s.scene.sun.azimuth_deg);
+            };
+            example(at_the_sun, away_from_the_sun, &[away_from_the_sun, SET], true)
+        }
+        Effect::MoonDisc => example(at_the_moon, away_from_the_moon, &[away_from_the_moon], true),
+        Effect::Stars => {
+            const ON: Change = |s| {
+                night(s);
+                (s.scene.weather.coverage, s.scene.camera.pitch_deg) = (0.0, 50.0);
+            };
+            example(ON, base, &[base], true)
+        }
+        Effect::Ground => {
+            const UP: Change = |s| s.scene.camera.pitch_deg = 80.0;
+            example(base, UP, &[UP], true)
+        }
+        Effect::Terrain => example(
+            mountains,
+            no_relief,
+            &[no_relief, |s| {
+                no_relief(s);
+                looking_down(s);
+            }],
+            true,
+        ),
+        Effect::GroundEverywhere => example(
+            looking_down,
+            base,
+            &[base, |s| {
+                mountains(s);
+                s.scene.camera.pitch_deg = 25.0;
+            }],
+            false,
+        ),
+        Effect::CloudShadows => {
+            const OFF: Change = |s| {
+                looking_down(s);
+                s.scene.ground.cloud_shadows = 0.0;
+            };
+            example(looking_down, OFF, &[OFF], true)
+        }
+        Effect::Clouds => {
+            const DOWN: Change = |s| (s.scene.camera.pitch_deg, s.scene.camera.height_m) = (-80.0, 900.0);
+            const UP: Change = |s| (s.scene.camera.pitch_deg, s.scene.camera.height_m) = (80.0, 9000.0);
+            example(base, |s| s.scene.layers.clear(), &[DOWN, UP], true)
+        }
+        Effect::CloudsEverywhere => {
+            const LEVEL: Change = |s| s.scene.camera.pitch_deg = -5.0;
+            const ABOVE: Change = |s| (s.scene.camera.pitch_deg, s.scene.camera.height_m) = (-5.0, 6000.0);
+            const TILTED: Change = |s| (s.scene.camera.pitch_deg, s.scene.camera.roll_deg) = (-12.0, 25.0);
+            const FLAT: Change = |s| (s.scene.camera.pitch_deg, s.scene.domain.kind) = (-5.0, DomainKind::Flat);
+            const BOX: Change = |s| (s.scene.camera.pitch_deg, s.scene.domain.kind) = (5.0, DomainKind::Box);
+            const PARTIAL: Change = |s| {
+                partial(s);
+                s.scene.camera.pitch_deg = -7.0;
+            };
+            const UP: Change = |s| s.scene.camera.pitch_deg = 45.0;
+            example(UP, LEVEL, &[LEVEL, ABOVE, TILTED, FLAT, BOX, PARTIAL], false)
+        }
+        Effect::Profile => {
+            const OFF: Change = |s| s.all_layers(|layer| layer.model = DensityModel::Thesis);
+            example(base, OFF, &[OFF], true)
+        }
+        Effect::Thesis => example(|s| s.all_layers(|layer| layer.model = DensityModel::Thesis), base, &[base], true),
+        Effect::Uniform => example(|s| s.all_layers(|layer| layer.model = DensityModel::Uniform), base, &[base], true),
+        Effect::Texture => example(texture, base, &[base], true),
+        Effect::ShapeNoise => example(base, |s| s.all_layers(|layer| layer.model = DensityModel::Thesis), &[], false),
+        Effect::Grid => example(
+            |s| {
+                s.all_layers(|layer| layer.model = DensityModel::Grid);
+                s.scene.domain.kind = DomainKind::Box;
+            },
+            base,
+            &[],
+            false,
+        ),
+        Effect::Baked => example(boxed, base, &[], false),
+        Effect::WeatherMap => example(base, |s| s.scene.layers.clear(), &[], false),
+        Effect::Detail => {
+            const OFF: Change = |s| s.all_layers(|layer| layer.detail_strength = 0.0);
+            example(base, OFF, &[OFF], true)
+        }
+        Effect::Curl => {
+            const ON: Change = |s| {
+                s.all_layers(|layer| layer.curl_m = 400.0);
+                (s.scene.camera.height_m, s.scene.camera.pitch_deg) = (1300.0, 10.0);
+            };
+            const OFF: Change = |s| s.all_layers(|layer| layer.curl_m = 0.0);
+            example(ON, OFF, &[OFF], true)
+        }
+        Effect::Front => {
+            const ON: Change = |s| {
+                (s.scene.weather.coverage_changes, s.scene.weather.coverage_change_to) = (true, 1.0);
+                (s.scene.weather.front_distance_m, s.scene.weather.front_width_m) = (2000.0, 1000.0);
+            };
+            const SAME: Change = |s| {
+                (s.scene.weather.coverage_changes, s.scene.weather.coverage_change_to) = (true, 0.6);
+            };
+            example(ON, |s| s.scene.weather.coverage_changes = false, &[SAME], true)
+        }
+        Effect::ClearWays => {
+            example(|s| s.scene.weather.coverage = 0.3, |s| s.scene.weather.edge = MapEdge::Clamp, &[], true)
+        }
+        Effect::KeyLight => {
+            const OFF: Change = |s| s.all_layers(|layer| layer.phase_gain = 0.0);
+            const SET: Change = |s| {
+                (s.scene.sun.elevation_deg, s.scene.moon.enabled) = (-5.6, false);
+                s.scene.display.exposure_ev = 0.0;
+            };
+            const DARK: Change = |s| {
+                night(s);
+                s.scene.moon.enabled = false;
+            };
+            example(base, OFF, &[OFF, SET, DARK], true)
+        }
+        Effect::Octaves => {
+            example(base, |s| s.quality.octaves = 0, &[|s| s.scene.scattering.octave_energy = 0.0], true)
+        }
+        Effect::HenyeyGreenstein => example(one_lobe, base, &[base], true),
+        Effect::TwoLobes => {
+            const OFF: Change = |s| s.all_layers(|layer| layer.phase.back_mix = 0.0);
+            example(base, OFF, &[OFF, one_lobe], true)
+        }
+        Effect::CornetteShanks => {
+            example(|s| s.all_layers(|layer| layer.phase.kind = PhaseKind::CornetteShanks), base, &[base], true)
+        }
+        Effect::Schlick => {
+            example(|s| s.all_layers(|layer| layer.phase.kind = PhaseKind::Schlick), base, &[base], true)
+        }
+        Effect::Rayleigh => {
+            const ON: Change = |s| {
+                s.all_layers(|layer| layer.phase.kind = PhaseKind::Rayleigh);
+                away_from_the_sun(s);
+            };
+            example(ON, base, &[base], true)
+        }
+        Effect::Ambient => {
+            const OFF: Change = |s| s.scene.scattering.ambient = 0.0;
+            const BLACK: Change = |s| {
+                s.scene.plain_light.enabled = true;
+                s.scene.plain_light.sky_radiance = 0.0;
+            };
+            example(base, OFF, &[OFF, BLACK], true)
+        }
+        Effect::Air => {
+            const EMPTY: Change = |s| (s.scene.air.haze, s.scene.air.molecules, s.scene.air.ozone) = (0.0, 0.0, 0.0);
+            example(base, |s| s.scene.air.aerial_perspective = false, &[EMPTY], true)
+        }
+        Effect::Distance => example(base, shown, &[shown], false),
+        Effect::Temporal => example(partial, shown, &[], true),
+        Effect::Sunshafts => {
+            const OFF: Change = |s| {
+                low_sun(s);
+                s.scene.sunshafts.strength = 0.0;
+            };
+            const BEHIND: Change = |s| {
+                low_sun(s);
+                s.look(8.0, 270.0);
+            };
+            const ASIDE: Change = |s| {
+                low_sun(s);
+                (s.scene.camera.field_of_view_axis, s.scene.camera.field_of_view_deg) =
+                    (FieldOfViewAxis::Horizontal, 60.0);
+                s.scene.sunshafts.length_deg = 90.0;
+                s.look(8.0, 90.0 + 145.0);
+            };
+            const SET: Change = |s| {
+                low_sun(s);
+                s.scene.sun.elevation_deg = -2.0;
+            };
+            example(low_sun, OFF, &[OFF, BEHIND, ASIDE, SET], true)
+        }
+        Effect::Grading => {
+            const ON: Change = |s| s.scene.display.contrast = 1.5;
+            const OFF: Change = |s| (s.scene.display.contrast, s.scene.display.saturation) = (1.0, 1.0);
+            example(ON, OFF, &[OFF], true)
+        }
+    }
+}
+
+/// All flags and all bindings of the programs a plan may ask for.
+fn traces(plan: &FramePlan) -> (BTreeSet<String>, BTreeSet<String>) {
+    let (mut flags, mut bindings) = (BTreeSet::new(), BTreeSet::new());
+    for key in programs(plan) {
+        flags.extend(key.flags.iter().map(|flag| (*flag).to_owned()));
+        let (_, used) = TABLE.compose(&key).unwrap_or_else(|error| panic!("{key}: {error}"));
+        bindings.extend(used.into_iter().map(|binding| binding.name));
+    }
+    (flags, bindings)
+}
+
+#[test]
+fn absent_means_no_flag_and_no_binding() {
+    let mut failures = Vec::new();
+    for effect in Effect::ALL {
+        let info = effect.info();
+        let Example { on, off, .. } = scenes(*effect);
+        let (on, off) = (Setup::new(on).plan(Forced::default()), Setup::new(off).plan(Forced::default()));
+        if !on.runs(*effect) || off.runs(*effect) {
+            failures.push(format!("{}: {} / {}", info.name, on.verdict(*effect).line(), off.verdict(*effect).line()));
+        }
+        let ((flags, bindings), (left_flags, left_bindings)) = (traces(&on), traces(&off));
+        for (names, there, left) in [(info.flags, &flags, &left_flags), (info.bindings, &bindings, &left_bindings)] {
+            for name in names {
+                if !there.contains(*name) {
+                    failures.push(format!("{}: its scene has no {name}", info.name));
+                }
+                if left.contains(*name) {
+                    failures.push(format!("{}: absent, but {name} is left", info.name));
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// What a picture is made of: light for a file, if it is for one, and the display's bytes.
+#[derive(PartialEq)]
+struct Picture {
+    light: Vec<[f32; 4]>,
+    display: Vec<u8>,
+}
+
+impl Picture {
+    /// Greatest difference of a value, relative to it or to a hundredth of the mean.
+    fn difference(&self, other: &Self) -> f32 {
+        let mean = self.light.iter().flatten().sum::<f32>() / (4 * self.light.len().max(1)) as f32;
+        let of_light = self.light.iter().flatten().zip(other.light.iter().flatten());
+        let of_display = self.display.iter().zip(&other.display);
+        let relative = |a: f32, b: f32, floor: f32| (a - b).abs() / a.abs().max(b.abs()).max(floor);
+        let light = of_light.map(|(a, b)| relative(*a, *b, 0.01 * mean)).fold(0.0, f32::max);
+        of_display.map(|(a, b)| f32::from(a.abs_diff(*b)) / 255.0).fold(light, f32::max)
+    }
+}
+
+fn picture(setup: &Setup, forced: Forced) -> Picture {
+    let mut renderer = renderer();
+    renderer.force(forced);
+    let plan = setup.plan(forced);
+    let made = renderer.render_as_planned(&frame(&setup.scene, &setup.quality, SIZE, setup.output), plan);
+    let display = renderer.display().expect("a picture").clone();
+    let display = readback::texture(renderer.gpu(), &display).expect("it can be read");
+    let light = renderer.linear().expect("it can be read").rgba;
+    renderer.force(Forced::default());
+    made.unwrap_or_else(|error| panic!("{error}"));
+    Picture { light, display }
+}
+
+#[test]
+fn absent_changes_nothing() {
+    let mut failures = Vec::new();
+    for effect in Effect::ALL {
+        for (index, change) in scenes(*effect).needless.iter().enumerate() {
+            let setup = Setup::new(*change);
+            let force = Forced::default().with(*effect, Some(true));
+            let name = format!("{}, scene {index}", effect.info().name);
+            let verdict = setup.plan(Forced::default()).verdict(*effect).clone();
+            if verdict.need != Need::Needless || !setup.plan(force).runs(*effect) {
+                failures.push(format!("{name}: not needless, or not forced: {}", verdict.line()));
+                continue;
+            }
+            let (without, with) = (picture(&setup, Forced::default()), picture(&setup, force));
+            let difference = without.difference(&with);
+            let may_differ = effect.info().may_differ;
+            if difference > may_differ || (may_differ == 0.0 && without != with) {
+                failures.push(format!("{name}: changes by {difference}, {}", verdict.line()));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn each_effect_is_seen_somewhere() {
+    /// Of a value; more than any tolerance above.
+    const VISIBLE: f32 = 0.01;
+    let mut failures = Vec::new();
+    for effect in Effect::ALL {
+        let Example { on, is_seen, .. } = scenes(*effect);
+        assert!(!is_seen || effect.info().can_be_off, "{effect:?}");
+        if !is_seen {
+            continue;
+        }
+        let setup = Setup::new(on);
+        let force = Forced::default().with(*effect, Some(false));
+        assert!(!setup.plan(force).runs(*effect), "{effect:?}");
+        let difference = picture(&setup, Forced::default()).difference(&picture(&setup, force));
+        if difference < VISIBLE {
+            failures.push(format!("{}: {difference}", effect.info().name));
+        }
+    }
+    assert!(failures.is_empty(), "forced off, these change nothing:\n{}", failures.join("\n"));
+}
+
+#[test]
+fn absent_passes_do_not_run() {
+    let mut failures = Vec::new();
+    for effect in Effect::ALL.iter().filter(|effect| !effect.info().passes.is_empty()) {
+        let Example { on, off, .. } = scenes(*effect);
+        let ran = |change: Change| -> Vec<&'static str> {
+            let setup = Setup::new(change);
+            // A renderer that holds nothing yet but programs.
+            let mut renderer = renderer();
+            renderer.forget_everything().unwrap_or_else(|error| panic!("{error}"));
+            let made = renderer.render(&frame(&setup.scene, &setup.quality, SIZE, setup.output));
+            made.unwrap_or_else(|error| panic!("{error}")).passes.iter().map(|time| time.pass).collect()
+        };
+        let (with, without) = (ran(on), ran(off));
+        for pass in effect.info().passes {
+            if !with.contains(pass) || without.contains(pass) {
+                failures.push(format!("{}: {pass} in {with:?}, not in {without:?}", effect.info().name));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+/// Built-in skies from places that nobody chose: all that is needless, forced on at once.
+#[test]
+fn leaving_everything_needless_out_changes_nothing() {
+    let mut failures = Vec::new();
+    for (index, builtin) in (0..).zip(BUILTINS) {
+        let scene = builtin.preset().unwrap_or_else(|error| panic!("{error}")).scene;
+        let scene = if index % 3 == 0 { scene } else { anywhere(&scene, index) };
+        let setup = Setup { scene, quality: quick(), output: Output::Linear };
+        let planned = setup.plan(Forced::default());
+        let needless = planned.verdicts.iter().filter(|verdict| verdict.need == Need::Needless);
+        let (mut forced, mut may_differ) = (Forced::default(), 0.0_f32);
+        for verdict in needless {
+            forced = forced.with(verdict.effect, Some(true));
+            may_differ = may_differ.max(verdict.effect.info().may_differ);
+        }
+        let difference = picture(&setup, Forced::default()).difference(&picture(&setup, forced));
+        if difference > may_differ {
+            failures.push(format!("{}: {difference} > {may_differ}", builtin.name));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
