@@ -97,7 +97,8 @@ struct Group {
 }
 
 // Groups wait here for their light. Rays that run side by side meet cloud at different steps; lit one after the other
-// they would wait for each other, lit together they do not.
+// they would wait for each other, lit together they do not. All rays light theirs at the same steps for the same reason,
+// which also bounds the rounds of all loops by view steps times light steps.
 const WAITING: u32 = 8u;
 var<private> waiting_count: u32;
 var<private> waiting_distance: array<f32, 8>;
@@ -173,7 +174,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
   var clear_samples = CLEAR_SAMPLES;
   while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
     steps_left -= 1u;
-    if (waiting_count == WAITING) {
+    if (waiting_count == WAITING || steps_left % WAITING == 0u) {
       seen.light += light_of_waiting(origin, dir);
     }
 #if COUNT

@@ -14,6 +14,7 @@ mod integrate;
 mod interrupt;
 mod presets;
 mod render;
+mod skies;
 mod verify;
 
 use std::path::PathBuf;

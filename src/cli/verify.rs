@@ -3,6 +3,7 @@
 use anyhow::Result;
 use clap::Args;
 
+use super::skies::{self, SkiesArgs};
 use super::{Device, print};
 use crate::files;
 use crate::gpu::Gpu;
@@ -13,7 +14,8 @@ use crate::scene::builtin::BUILTINS;
 #[derive(Debug, Args)]
 pub(super) struct VerifyArgs {
     /// Skies to check: built-in names or files; the first built-in one if none is given.
-    skies: Vec<std::path::PathBuf>,
+    #[arg(value_name = "SKIES")]
+    of: Vec<std::path::PathBuf>,
     /// Check all built-in skies, larger, with more paths and from more places. Takes many minutes on a processor.
     #[arg(long)]
     full: bool,
@@ -21,10 +23,20 @@ pub(super) struct VerifyArgs {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
+    drawn: SkiesArgs,
+    #[command(flatten)]
     device: Device,
 }
 
 impl VerifyArgs {
+    fn verdict(&self, all: &[Check], gpu: &Gpu) -> Result<()> {
+        let failed = all.iter().filter(|check| !check.holds).count();
+        if failed > 0 {
+            return Err(Failed { failed, count: all.len(), adapter: gpu.description() }.into());
+        }
+        if self.json { Ok(()) } else { print(&format!("all {} checks hold\n", all.len())) }
+    }
+
     fn tell(&self, check: &Check) -> Result<()> {
         if self.json {
             let line = serde_json::json!({ "name": check.name, "holds": check.holds, "figure": check.figure });
@@ -45,10 +57,10 @@ struct Failed {
 
 pub(super) fn run(args: &VerifyArgs) -> Result<()> {
     let builtin = if args.full { BUILTINS } else { &BUILTINS[..1] };
-    let names = if args.skies.is_empty() {
+    let names = if args.of.is_empty() {
         builtin.iter().map(|builtin| std::path::PathBuf::from(builtin.name)).collect()
     } else {
-        args.skies.clone()
+        args.of.clone()
     };
     let skies = names.iter().map(|name| files::open(name)).collect::<Result<Vec<_>, _>>()?;
     let gpu = Gpu::headless(&args.device.choice())?;
@@ -56,6 +68,11 @@ pub(super) fn run(args: &VerifyArgs) -> Result<()> {
         print(&format!("{}\n", gpu.description()))?;
     }
     let mut renderer = Renderer::new(&gpu)?;
+    if let Some(count) = args.drawn.skies {
+        let checks = skies::run(&mut renderer, &args.drawn, count)?;
+        checks.iter().try_for_each(|check| args.tell(check))?;
+        return args.verdict(&checks, &gpu);
+    }
     let (size, paths, views) = if args.full { ([64, 36], 128, 20) } else { ([32, 18], 64, 4) };
     let mut all: Vec<Check> = analytic(&mut renderer, args.full)?;
     all.iter().try_for_each(|check| args.tell(check))?;
@@ -66,9 +83,5 @@ pub(super) fn run(args: &VerifyArgs) -> Result<()> {
         checks.iter().try_for_each(|check| args.tell(check))?;
         all.append(&mut checks);
     }
-    let failed = all.iter().filter(|check| !check.holds).count();
-    if failed > 0 {
-        return Err(Failed { failed, count: all.len(), adapter: gpu.description() }.into());
-    }
-    if args.json { Ok(()) } else { print(&format!("all {} checks hold\n", all.len())) }
+    args.verdict(&all, &gpu)
 }

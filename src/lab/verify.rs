@@ -4,6 +4,7 @@
 //! they walk through them. With single scattering of the key light alone both have to see the same picture: the converged
 //! march up to its last halving of steps, paths up to their noise.
 
+pub mod skies;
 mod slabs;
 
 use glam::UVec3;

@@ -4,16 +4,23 @@ use super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, 
 
 /// Gives every parameter of `root` a value from its range; file names stay. The same seed gives the same values.
 pub fn randomise(root: &mut impl Params, seed: u32) {
-    root.visit(&mut Random { state: u64::from(seed) });
+    root.visit(&mut Random { stream: Stream::new(seed.into()) });
 }
 
-struct Random {
+/// A sequence of numbers, the same for the same seed (`SplitMix64`; Steele, Lea and Flood 2014).
+#[derive(Clone, Debug)]
+pub struct Stream {
     state: u64,
 }
 
-impl Random {
-    /// Uniform in 0 ..= 1 (`SplitMix64`; Steele, Lea and Flood 2014).
-    fn unit(&mut self) -> f64 {
+impl Stream {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self { state: seed }
+    }
+
+    /// Uniform in 0 ..= 1.
+    pub fn unit(&mut self) -> f64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut bits = self.state;
         bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -22,13 +29,18 @@ impl Random {
         (bits >> 11) as f64 / ((1_u64 << 53) - 1) as f64
     }
 
-    fn below(&mut self, count: usize) -> usize {
+    /// An index below `count`; 0 where there is none.
+    pub fn below(&mut self, count: usize) -> usize {
         let index = self.unit() * count as f64;
         // Truncation is meant: `index` lies in 0 ..= count.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 ..= count")]
         let index = index as usize;
         index.min(count.saturating_sub(1))
     }
+}
+
+struct Random {
+    stream: Stream,
 }
 
 /// The nearest number of single precision.
@@ -40,7 +52,7 @@ fn narrow(number: f64) -> f32 {
 impl Visitor for Random {
     fn float(&mut self, info: &Info<f32>, value: &mut f32) {
         let Some(range) = &info.range else { return };
-        let (low, high, at) = (f64::from(*range.start()), f64::from(*range.end()), self.unit());
+        let (low, high, at) = (f64::from(*range.start()), f64::from(*range.end()), self.stream.unit());
         let drawn = if info.logarithmic && low > 0.0 { low * (high / low).powf(at) } else { low + (high - low) * at };
         *value = narrow(drawn).clamp(*range.start(), *range.end());
     }
@@ -48,19 +60,19 @@ impl Visitor for Random {
     fn count(&mut self, info: &Info<u32>, value: &mut u32) {
         let Some(range) = &info.range else { return };
         let span = (range.end() - range.start()) as usize + 1;
-        *value = range.start() + u32::try_from(self.below(span)).unwrap_or(0);
+        *value = range.start() + u32::try_from(self.stream.below(span)).unwrap_or(0);
     }
 
     fn switch(&mut self, _: &Info<bool>, value: &mut bool) {
-        *value = self.unit() < 0.5;
+        *value = self.stream.unit() < 0.5;
     }
 
     fn choice(&mut self, info: &ChoiceInfo, index: &mut usize) {
-        *index = self.below(info.options.len());
+        *index = self.stream.below(info.options.len());
     }
 
     fn colour(&mut self, _: &Info<Colour>, value: &mut Colour) {
-        let mut part = || narrow(self.unit());
+        let mut part = || narrow(self.stream.unit());
         *value = Colour(part(), part(), part());
     }
 
@@ -74,7 +86,7 @@ impl Visitor for Random {
         while list.count() > 1 {
             list.remove(list.count() - 1);
         }
-        for index in 0..=self.below(super::MAX_LAYERS) {
+        for index in 0..=self.stream.below(super::MAX_LAYERS) {
             if list.count() <= index {
                 list.append();
             }

@@ -58,7 +58,7 @@ impl AtRest {
         let goal = Goal::Converged { tolerance: TOLERANCE, levels: LEVELS };
         let truth = renderer.begin_truth(frame, goal, frame.quality.pixel_samples)?;
         self.progress = Some(truth.progress());
-        self.has_cloud = truth.plan().march.is_some();
+        self.has_cloud = truth.plan().has_clouds();
         self.converged = Slot::Working(Box::new(truth));
         Ok(())
     }

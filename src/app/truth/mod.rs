@@ -293,7 +293,7 @@ impl Truths {
             None => (Integrator::Converged, at_rest.progress(), at_rest.has_cloud()),
             Some(reference) => {
                 let kept = self.moment.kept(reference);
-                let has_cloud = kept.is_some_and(|kept| kept.truth.plan().march.is_some());
+                let has_cloud = kept.is_some_and(|kept| kept.truth.plan().has_clouds());
                 (reference, kept.map(|kept| kept.truth.progress()), has_cloud)
             }
         };

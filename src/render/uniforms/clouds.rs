@@ -152,6 +152,10 @@ const USUAL_WAY_M: f32 = 3000.0;
 /// How many times as many there are for the longest ways.
 const MOST_LIGHT_STEPS: f32 = 3.5;
 
+/// Light steps that all view steps of a ray may take together. llvmpipe ends all loops of an invocation after 65,535 rounds,
+/// and no card should be asked for more of one pixel in one dispatch.
+const MOST_ITERATIONS: u32 = 56_000;
+
 /// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
 fn light_steps(usual: u32, thickness_m: f32, light_sine: f32) -> u32 {
@@ -231,7 +235,8 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         step_m: quality.step_m,
         step_growth: quality.step_growth,
         empty_stride: quality.empty_stride,
-        light_steps: light_steps(quality.light_steps, highest_m - lowest_m, lighting.towards_key.y),
+        light_steps: light_steps(quality.light_steps, highest_m - lowest_m, lighting.towards_key.y)
+            .min((MOST_ITERATIONS / quality.view_steps.max(1)).max(1)),
         light_spread_per_m: quality.light_spread_per_m(),
         light_reach_m: quality.light_reach_m,
         light_detail_steps: quality.light_detail_steps,
