@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs every check: formatting, lints, documentation, all tests, the window under Xvfb, exported files.
+# Runs every check: formatting, lints, documentation, all tests, the window under Xvfb, exported files, a
+# second driver.
 # Ends with one line, "N passed, N failed, N skipped", and a status other than 0 if anything failed.
 #
 # Arguments go to the tests (scripts/test.sh plan::) and leave the other checks out.
@@ -37,6 +38,7 @@ check "documentation" document
 check "tests" run_tests --no-fail-fast
 check "window" scripts/window_smoke.sh
 check "exported files" scripts/check_exr.sh
+check "second driver" scripts/swiftshader.sh
 
 ((${#failed[@]} == 0)) || for what in "${failed[@]}"; do say "FAILED: $what"; done
 summary

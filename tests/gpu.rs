@@ -22,4 +22,5 @@ mod gpu {
     mod temporal;
     mod textures;
     mod truth;
+    mod verify;
 }

@@ -148,6 +148,8 @@ var<private> steps_left: u32;
 
 // Shortest step that looks for a surface, relative to ordinary ones.
 const SURFACE_STEP: f32 = 0.1;
+// And in ordinary optical depths: the light in cloud that is far denser than water is lies in its first centimetres.
+const SURFACE_DEPTH: f32 = 0.5;
 // Clear samples after which steps become longer.
 const CLEAR_SAMPLES: u32 = 4u;
 // Shortest step before a surface, relative to ordinary ones.
@@ -166,8 +168,9 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
   // whatever the jitter.
   var behind = jitter * step_at(segment.x);
   var t = segment.x + behind;
-  // How much of the last step nothing was known of.
-  var unseen = 0.0;
+  // How much of the last step nothing was known of: at first the way to the first sample, before which there may be a
+  // surface, that of fog or of a box that cuts through cloud.
+  var unseen = behind;
   // The nearest place that has cloud, where the surface is before it.
   var met = 0.0;
   var inside_step = step_at(segment.x);
@@ -181,12 +184,13 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     atomicAdd(&counters[1], 1u);
 #endif
     let step = step_at(t);
-    let surface_step = select(step, step * SURFACE_STEP, is_varied);
     let fade = detail_fade(t);
     clearness = 1.0;
     clear_way = FAR_M;
     let densities = densities_at(origin + dir * t, Reading(noise_level(t), fade < 1.0, fade, true));
     let extinction = extinction_of(densities);
+    let within_depth = max(SURFACE_DEPTH * scene.step_depth / max(extinction, 1e-9), 1e-6 * t);
+    let surface_step = select(step, min(step * SURFACE_STEP, within_depth), is_varied);
     if (extinction <= 0.0) {
       close_group();
       inside_step = 0.0;

@@ -7,7 +7,7 @@ use super::skies::{self, SkiesArgs};
 use super::{Device, print};
 use crate::files;
 use crate::gpu::Gpu;
-use crate::lab::verify::{Check, analytic, single_scattering_agrees, stays_finite};
+use crate::lab::verify::{Check, analytic, hard_cases, single_scattering_agrees, stays_finite};
 use crate::render::Renderer;
 use crate::scene::builtin::BUILTINS;
 
@@ -16,6 +16,9 @@ pub(super) struct VerifyArgs {
     /// Skies to check: built-in names or files; the first built-in one if none is given.
     #[arg(value_name = "SKIES")]
     of: Vec<std::path::PathBuf>,
+    /// The hard cases alone.
+    #[arg(long, conflicts_with_all = ["full", "skies"])]
+    hard: bool,
     /// Check all built-in skies, larger, with more paths and from more places. Takes many minutes on a processor.
     #[arg(long)]
     full: bool,
@@ -73,9 +76,17 @@ pub(super) fn run(args: &VerifyArgs) -> Result<()> {
         checks.iter().try_for_each(|check| args.tell(check))?;
         return args.verdict(&checks, &gpu);
     }
+    if args.hard {
+        let checks = hard_cases(&mut renderer)?;
+        checks.iter().try_for_each(|check| args.tell(check))?;
+        return args.verdict(&checks, &gpu);
+    }
     let (size, paths, views) = if args.full { ([64, 36], 128, 20) } else { ([32, 18], 64, 4) };
     let mut all: Vec<Check> = analytic(&mut renderer, args.full)?;
     all.iter().try_for_each(|check| args.tell(check))?;
+    let mut hard = hard_cases(&mut renderer)?;
+    hard.iter().try_for_each(|check| args.tell(check))?;
+    all.append(&mut hard);
     for sky in &skies {
         let named = (sky.preset.name.as_str(), &sky.preset.scene);
         let mut checks = single_scattering_agrees(&mut renderer, named, (size, paths), &mut |_| {})?;

@@ -4,6 +4,7 @@
 //! they walk through them. With single scattering of the key light alone both have to see the same picture: the converged
 //! march up to its last halving of steps, paths up to their noise.
 
+mod hard;
 pub mod skies;
 mod slabs;
 
@@ -17,6 +18,7 @@ use crate::render::{RenderError, Renderer};
 use crate::scene::param::Choice as _;
 use crate::scene::{Frame, Output, Quality, Scene};
 
+pub use hard::hard_cases;
 pub use slabs::analytic;
 
 /// Where the converged march stops.

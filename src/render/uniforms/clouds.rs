@@ -154,7 +154,7 @@ const MOST_LIGHT_STEPS: f32 = 3.5;
 
 /// Light steps that all view steps of a ray may take together. llvmpipe ends all loops of an invocation after 65,535 rounds,
 /// and no card should be asked for more of one pixel in one dispatch.
-const MOST_ITERATIONS: u32 = 56_000;
+const MOST_ITERATIONS: u32 = 48_000;
 
 /// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
