@@ -6,6 +6,7 @@ mod gpu {
     mod clearance;
     mod density;
     mod effects;
+    mod faults;
     mod frames;
     mod grid;
     mod lab;

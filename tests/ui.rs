@@ -292,6 +292,32 @@ fn broken_files_leave_the_document_and_say_where() {
 }
 
 #[test]
+fn a_preset_that_others_have_changed_is_not_overwritten_unasked() {
+    let mut editor = Editor::new();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("shared.ron");
+    editor.document().preset().save(&path).expect("the folder is writable");
+    editor.harness.state_mut().open(&path);
+    editor.type_number("weather.coverage", "0.8");
+    let mut theirs = editor.document().saved().clone();
+    theirs.name = "Theirs".to_owned();
+    theirs.save(&path).expect("the folder is writable");
+    let save = |editor: &mut Editor| {
+        editor.harness.key_combination_modifiers(egui::Modifiers::COMMAND, &[egui::Key::S]);
+        editor.harness.run();
+    };
+    let on_disk = || Preset::load(&path).expect("it is a preset");
+    save(&mut editor);
+    assert!(editor.toasts().last().is_some_and(|text| text.contains("shared.ron")), "{:?}", editor.toasts());
+    assert_eq!((on_disk().name.as_str(), editor.document().is_modified()), ("Theirs", true));
+    save(&mut editor);
+    assert_eq!((on_disk().scene.weather.coverage, editor.document().is_modified()), (0.8, false), "asked for twice");
+    editor.type_number("weather.coverage", "0.7");
+    save(&mut editor);
+    assert_eq!(on_disk().scene.weather.coverage, 0.7, "nobody else has changed it since");
+}
+
+#[test]
 fn closing_with_changes_asks_and_without_quits() {
     let mut editor = Editor::new();
     let quit = |editor: &mut Editor| {

@@ -96,6 +96,11 @@ impl Document {
         }
     }
 
+    /// The preset as it was opened or saved last.
+    pub fn saved(&self) -> &Preset {
+        &self.saved
+    }
+
     /// Remembers that the preset as it is now lies in `path`.
     pub fn mark_saved(&mut self, path: PathBuf) {
         self.path = Some(path);

@@ -18,10 +18,18 @@ pub(super) struct Recovery {
 }
 
 impl Recovery {
-    /// Copies go into `folder`; returns what an earlier run left there.
-    pub(super) fn open(folder: &Path) -> (Self, Option<Preset>) {
+    /// Copies go into `folder`; returns what an earlier run left there, or why it cannot be read. A damaged copy is put aside:
+    /// somebody may still find something in it.
+    pub(super) fn open(folder: &Path) -> (Self, Option<Result<Preset, String>>) {
         let path = folder.join("recovery.ron");
-        let left = Preset::load(&path).ok();
+        let left = path.exists().then(|| {
+            Preset::load(&path).map_err(|error| {
+                let aside = folder.join("recovery-damaged.ron");
+                // Where it cannot be moved it stays, and is still named below.
+                let _ = std::fs::rename(&path, &aside);
+                format!("the copy of unsaved work is damaged and kept as {}: {error}", aside.display())
+            })
+        });
         (Self { path, written: None, last: Instant::now() }, left)
     }
 
@@ -76,12 +84,27 @@ mod tests {
         document.apply(&Action::Rename("Storm".to_owned()));
         recovery.keep(&document);
         let (_, left) = Recovery::open(&state);
-        assert_eq!(left.expect("a copy").name, "Storm");
+        assert_eq!(left.expect("a copy").expect("a sound one").name, "Storm");
         assert_eq!(recovery.due_in(&document), None, "the copy is as new as the work");
         document.apply(&Action::Rename("Storms".to_owned()));
         assert!(recovery.due_in(&document).is_some(), "it is no longer");
         document.mark_saved(folder.path().join("storm.ron"));
         recovery.keep(&document);
         assert!(Recovery::open(&state).1.is_none(), "saved work needs no copy");
+    }
+
+    #[test]
+    fn a_damaged_copy_is_put_aside_and_said() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        std::fs::write(folder.path().join("recovery.ron"), "(version: 2, scene: (lay").expect("written");
+        let (mut recovery, left) = Recovery::open(folder.path());
+        let said = left.expect("something was there").expect_err("it is no preset");
+        assert!(said.contains("recovery-damaged.ron"), "{said}");
+        let mut document = Document::new(Preset::default(), Quality::default());
+        document.apply(&Action::Rename("Next".to_owned()));
+        recovery.keep(&document);
+        let aside = std::fs::read_to_string(folder.path().join("recovery-damaged.ron")).expect("kept");
+        assert!(aside.ends_with("(lay"), "as it was");
+        assert_eq!(Recovery::open(folder.path()).1.expect("a copy").expect("a sound one").name, "Next");
     }
 }

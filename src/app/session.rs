@@ -50,6 +50,8 @@ pub struct Session {
     pub ui: ui::State,
     /// Where things are kept.
     pub folders: Folders,
+    /// A file that others have changed and that the user was told of.
+    warned_of: Option<PathBuf>,
     /// What waits for the answer about unsaved changes.
     pending: Option<Request>,
     /// What a crash left behind, until the user decides.
@@ -60,7 +62,7 @@ impl Session {
     /// A session that edits `document`.
     pub fn new(document: Document, folders: Folders) -> Self {
         let ui = ui::State { library: storage::library(&folders.presets), ..ui::State::default() };
-        Self { document, ui, folders, pending: None, recovered: None }
+        Self { document, ui, folders, pending: None, recovered: None, warned_of: None }
     }
 
     /// Asks whether to take what a crash left behind.
@@ -96,6 +98,7 @@ impl Session {
             Request::New | Request::Open(_) | Request::Quit => self.unless_unsaved(request),
             Request::Save => {
                 match self.document.path().cloned() {
+                    Some(path) if self.is_changed_by_others(&path) => {}
                     Some(path) => {
                         self.save_to(&path);
                     }
@@ -185,6 +188,23 @@ impl Session {
 
     fn ask_where_to_save(&mut self) {
         self.ui.dialog = Some(Dialog::save_as(&self.document, &self.ui.library));
+    }
+
+    /// Whether a file is no longer what the document came from, so that saving would lose somebody's work. It is said once;
+    /// who saves again means it.
+    fn is_changed_by_others(&mut self, path: &Path) -> bool {
+        if self.warned_of.take().as_deref() == Some(path) || !path.exists() {
+            return false;
+        }
+        let is_same = Preset::load(path).is_ok_and(|on_disk| on_disk == *self.document.saved());
+        if !is_same {
+            self.ui.toasts.error(format!(
+                "{} was changed since it was opened: Save as keeps both, Save once more overwrites it",
+                path.display()
+            ));
+            self.warned_of = Some(path.to_owned());
+        }
+        !is_same
     }
 
     /// Saves, says so, and tells whether it worked; on failure everything stays as it was.

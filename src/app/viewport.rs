@@ -38,6 +38,9 @@ impl Inputs {
     }
 }
 
+/// Pictures after which their values are looked at again; that takes a read of each texel.
+const PICTURES_UNWATCHED: u32 = 64;
+
 /// What a step of the viewport led to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Step {
@@ -69,6 +72,10 @@ pub(super) struct Viewport {
     /// Whether what the truths were made from has changed since it was last asked.
     has_moved_on: bool,
     governor: Governor,
+    /// Pictures since values were looked at last.
+    unwatched: u32,
+    /// What was found that is no light, until somebody takes it.
+    broken: Option<String>,
     /// Frame time that the governor holds, in milliseconds, while it is on.
     budget_ms: Option<f64>,
 }
@@ -88,6 +95,8 @@ impl Viewport {
             truths: Truths::new(),
             has_moved_on: false,
             governor: Governor::default(),
+            unwatched: 0,
+            broken: None,
             budget_ms: None,
         })
     }
@@ -186,9 +195,26 @@ impl Viewport {
                     self.governor.frame(report.total_ms, budget_ms);
                 }
                 self.statistics.add(*report);
+                self.watch()?;
                 Ok(Step::Finished)
             }
         }
+    }
+
+    /// Looks for values that are not finite, now and then.
+    fn watch(&mut self) -> Result<(), RenderError> {
+        self.unwatched += 1;
+        if self.unwatched >= PICTURES_UNWATCHED {
+            self.unwatched = 0;
+            let first = self.renderer.find_broken()?.into_iter().next();
+            self.broken = first.map(|broken| format!("{broken}; `nephoscope verify` says whether it is the driver"));
+        }
+        Ok(())
+    }
+
+    /// What was found broken since this was asked before.
+    pub(super) fn take_broken(&mut self) -> Option<String> {
+        self.broken.take()
     }
 
     /// Lets the truths take a turn, after a step that left nothing to do.

@@ -47,10 +47,13 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         adapter,
         recovery,
         live: None,
+        lose_device_after: lose_device_after(),
         failure: None,
     };
-    if let Some(preset) = left {
-        app.session.offer_recovery(preset);
+    match left {
+        Some(Ok(preset)) => app.session.offer_recovery(preset),
+        Some(Err(said)) => app.session.ui.toasts.error(said),
+        None => {}
     }
     event_loop.run_app(&mut app).context("the window's event loop failed")?;
     app.failure.map_or(Ok(()), Err)
@@ -66,6 +69,8 @@ struct App {
     proxy: EventLoopProxy<Event>,
     /// What exists only while there is a window.
     live: Option<Live>,
+    /// When the device is taken away, to try what then happens.
+    lose_device_after: Option<Duration>,
     /// Why the program ends.
     failure: Option<anyhow::Error>,
 }
@@ -262,6 +267,9 @@ impl App {
                     wake = sooner(wake, now + POLL);
                 }
                 Ok(Step::Finished) => {
+                    if let Some(broken) = live.viewport.take_broken() {
+                        self.session.ui.toasts.error(broken);
+                    }
                     live.draw_within(Duration::ZERO);
                     wake = Some(now);
                 }
@@ -459,8 +467,14 @@ impl App {
     /// Reports errors of the device that nobody waited for; a lost device is replaced, and all it held made anew.
     fn look_after_device(&mut self, event_loop: &ActiveEventLoop) {
         let Some(live) = &mut self.live else { return };
-        let Some(error) = live.gpu.take_uncaught_error() else { return };
-        let lost = error.to_string().contains("device lost");
+        if self.lose_device_after.is_some_and(|after| live.device_opened.elapsed() >= after) {
+            self.lose_device_after = None;
+            live.gpu.device.destroy();
+        }
+        // Another thread may have taken the error of a lost device.
+        let taken = live.gpu.take_uncaught_error();
+        let Some(error) = taken.or_else(|| live.gpu.loss()) else { return };
+        let lost = live.gpu.is_lost();
         self.session.ui.toasts.error(error);
         live.draw_within(Duration::ZERO);
         if !lost {
@@ -475,6 +489,12 @@ impl App {
             self.fail(event_loop, error);
         }
     }
+}
+
+/// Seconds after which `NEPHOSCOPE_LOSE_DEVICE_AFTER` wants the device lost.
+fn lose_device_after() -> Option<Duration> {
+    let seconds: f64 = std::env::var("NEPHOSCOPE_LOSE_DEVICE_AFTER").ok()?.parse().ok()?;
+    Duration::try_from_secs_f64(seconds).ok()
 }
 
 /// The earlier of two times to wake up.

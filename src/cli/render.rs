@@ -65,6 +65,9 @@ pub(super) struct RenderArgs {
     /// Codec of an EXR.
     #[arg(long, default_value = "zip")]
     compression: CompressionArg,
+    /// Look at every value that each pass writes, and fail at the first that is not finite.
+    #[arg(long)]
+    watch: bool,
     /// Print one line of JSON for each file.
     #[arg(long)]
     json: bool,
@@ -122,6 +125,7 @@ impl RenderArgs {
             clouds_only: false,
             depth: None,
             compression: CompressionArg::Zip,
+            watch: false,
             json: false,
             edits,
             device,
@@ -296,6 +300,10 @@ fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, t
             (truth.into_display(), linear)
         }
     };
+    let is_broken = linear.as_ref().is_some_and(|linear| linear.image.rgba.iter().flatten().any(|v| !v.is_finite()));
+    if args.watch || is_broken {
+        watch(renderer, &frame).with_context(|| format!("{} was not written", path.display()))?;
+    }
     match linear {
         Some(linear) => save_exr(path, &linear.image, &about, args.exr_options()).map(|_| ())?,
         None => {
@@ -304,6 +312,15 @@ fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, t
         }
     }
     Ok(())
+}
+
+/// Finds the pass that first writes a value that is not finite.
+fn watch(renderer: &mut Renderer, frame: &Frame<'_>) -> Result<()> {
+    renderer.render(&Frame { output: Output::Linear, ..*frame })?;
+    match renderer.find_broken()?.first() {
+        Some(broken) => anyhow::bail!("{broken}; `nephoscope verify` says whether this is the driver"),
+        None => Ok(()),
+    }
 }
 
 fn progress(count: usize) -> ProgressBar {

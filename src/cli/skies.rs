@@ -99,7 +99,7 @@ fn read_values(path: &Path) -> Result<Vec<f32>> {
 fn keep(folder: &Path, index: u64, drawn: Drawn) -> Result<PathBuf> {
     std::fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))?;
     let path = folder.join(format!("sky_{index}.ron"));
-    Preset::new(&format!("Sky {index} at {} s", drawn.time_secs), drawn.scene).save(&path)?;
+    Preset::new(format!("Sky {index} at {} s", drawn.time_secs), drawn.scene).save(&path)?;
     let quality = folder.join(format!("sky_{index}.quality.ron"));
     crate::files::save_quality(&drawn.quality, &quality)?;
     Ok(path)

@@ -51,6 +51,8 @@ pub struct Gpu {
     pub info: wgpu::AdapterInfo,
     /// The first error that no scope caught, until somebody takes it.
     uncaught: Arc<Mutex<Option<String>>>,
+    /// Why the device is lost, if it is: for good.
+    lost: Arc<Mutex<Option<String>>>,
 }
 
 impl Gpu {
@@ -114,15 +116,16 @@ impl Gpu {
                 slot.get_or_insert_with(|| error.to_string());
             }
         }));
-        let slot = Arc::clone(&uncaught);
-        device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed
-                && let Ok(mut slot) = slot.lock()
-            {
-                *slot = Some(format!("device lost: {message}"));
+        let lost = Arc::new(Mutex::new(None));
+        let slots = [Arc::clone(&uncaught), Arc::clone(&lost)];
+        device.set_device_lost_callback(move |_, message| {
+            for slot in &slots {
+                if let Ok(mut slot) = slot.lock() {
+                    *slot = Some(format!("device lost: {message}"));
+                }
             }
         });
-        Ok(Self { instance, adapter, device, queue, info, uncaught })
+        Ok(Self { instance, adapter, device, queue, info, uncaught, lost })
     }
 
     /// WebGPU's defaults; images may be as large as the adapter allows.
@@ -177,6 +180,16 @@ impl Gpu {
         let driver = [self.info.driver.as_str(), self.info.driver_info.as_str()];
         let driver: Vec<&str> = driver.into_iter().filter(|part| !part.is_empty()).collect();
         format!("{} ({}; {:?})", self.info.name, driver.join(" "), self.info.backend)
+    }
+
+    /// The error of a device that is lost; every thread that holds it sees it.
+    pub fn loss(&self) -> Option<GpuError> {
+        self.lost.lock().ok()?.clone().map(GpuError::Device)
+    }
+
+    /// Whether the device is lost.
+    pub fn is_lost(&self) -> bool {
+        self.loss().is_some()
     }
 
     /// Takes the first error that came outside any error scope since the last call.

@@ -101,6 +101,18 @@ impl Bakes {
         Ok(())
     }
 
+    /// Noises and relief with the pass that makes each.
+    pub(super) fn textures(&self) -> impl Iterator<Item = (&'static str, &Texture)> {
+        let optional = [
+            ("bake_shape", self.shape.as_ref()),
+            ("bake_worley", self.worley.as_ref()),
+            ("bake_detail", self.detail.as_ref()),
+            ("bake_curl", self.curl.as_ref()),
+            ("bake_terrain", self.relief.as_ref().map(|(_, texture)| texture)),
+        ];
+        optional.into_iter().filter_map(|(pass, texture)| Some((pass, texture?)))
+    }
+
     /// Everything that exists, by the name shaders give it.
     pub(super) fn resources(&self) -> Bound<'_> {
         let mut bound: Bound<'_> = vec![

@@ -20,6 +20,7 @@ mod targets;
 pub mod truth;
 pub mod uniforms;
 mod voxels;
+pub mod watch;
 mod weather;
 
 use std::collections::VecDeque;

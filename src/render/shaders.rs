@@ -52,6 +52,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         "TEXTURE",
         "THESIS",
         "UNIFORM",
+        "VOLUME",
     ],
     structs: &[
         AirUniforms::GENERATED,

@@ -70,6 +70,7 @@ files! {
     "pass/tonemap.wgsl",
     "pass/truth_resolve.wgsl",
     "pass/voxel_bound.wgsl",
+    "pass/watch.wgsl",
     "pass/weather_blend.wgsl",
     "pass/weather_bound.wgsl",
     "pass/weather_map.wgsl",

@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nephoscope::gpu::ProgramKey;
 use nephoscope::plan::FramePlan;
-use nephoscope::render::{programs, shaders::TABLE, truth};
+use nephoscope::render::{programs, shaders::TABLE, truth, watch};
 use nephoscope::scene::builtin::BUILTINS;
+use nephoscope::scene::edit;
 use nephoscope::scene::random::randomise;
 use nephoscope::scene::{DensityModel, DomainKind, Frame, Output, Quality, Scene, ToneMap, UpdateFraction};
 use nephoscope::shader::{FILES, compose, validate};
@@ -68,6 +69,7 @@ fn reachable() -> BTreeMap<String, ProgramKey> {
         scenes.push((scene, quality));
     }
     let mut keys = vec![ProgramKey::plain("pass/weather_blend.wgsl").with_flags(["BELOW"])];
+    keys.extend(watch::programs());
     for (scene, quality) in &scenes {
         for output in [Output::Display, Output::Linear, Output::CloudsAlone] {
             let plan = FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output });
@@ -97,6 +99,34 @@ fn every_pass_in_every_form_that_a_sky_can_ask_for_is_valid() {
         .map(|(path, _)| *path)
         .collect();
     assert!(never.is_empty(), "no sky asks for {never:?}");
+}
+
+/// Programs are compiled as they are asked for, so there must not be too many: of all built-in skies as they are, and with
+/// any one parameter at 0, at its ends, switched, or with another choice.
+#[test]
+fn one_edit_reaches_few_programs() {
+    let quality = Quality::default();
+    let programs_of = |scene: &Scene| -> Vec<String> {
+        let frame = Frame { scene, quality: &quality, size: [64, 36], time_secs: 0.0, output: Output::Display };
+        programs(&FramePlan::new(&frame)).iter().map(ToString::to_string).collect()
+    };
+    let (mut as_they_are, mut edited) = (BTreeSet::new(), BTreeSet::new());
+    for builtin in BUILTINS {
+        let scene = builtin.preset().unwrap_or_else(|error| panic!("{error}")).scene;
+        as_they_are.extend(programs_of(&scene));
+        for entry in edit::keys(&scene) {
+            let ends = entry.allowed.split(|c: char| !(c.is_alphanumeric() || "+-.".contains(c)));
+            for value in ends.chain(["0", "true", "false"]).filter(|value| !value.is_empty()) {
+                let mut changed = scene.clone();
+                if edit::set(&mut changed, &entry.key, value).is_ok() && changed.problems().is_empty() {
+                    edited.extend(programs_of(&changed));
+                }
+            }
+        }
+    }
+    println!("{} programs, {} with one edit", as_they_are.len(), edited.len());
+    assert!(as_they_are.len() <= 60 && edited.len() > as_they_are.len(), "{} programs", as_they_are.len());
+    assert!(edited.len() <= 400, "{} programs with one edit", edited.len());
 }
 
 #[test]
