@@ -111,7 +111,7 @@ impl FramePlan {
         let ground = lights::ground(frame, &mut why);
         let field = MarchVariant::of_field(frame, &mut why);
         let has_field = field.is_some();
-        let cloud_rows = cloud_rows(frame, (has_field, ground.is_some()), &mut why);
+        let cloud_rows = cloud_rows(frame, has_field, &mut why);
         let has_clouds = !cloud_rows.is_empty();
         let shadow_px = lights::cloud_shadow(frame, (ground.is_some(), has_field), &lighting, &mut why);
         let temporal = temporal(frame, has_clouds, &mut why);
@@ -190,9 +190,9 @@ impl FramePlan {
 }
 
 /// Rows of the picture that are marched.
-fn cloud_rows(frame: &Frame<'_>, (has_field, has_ground): (bool, bool), why: &mut Verdicts) -> Range<u32> {
+fn cloud_rows(frame: &Frame<'_>, has_field: bool, why: &mut Verdicts) -> Range<u32> {
     let all = frame.render_size()[1];
-    let in_view = if has_field { rows::cloud_rows(frame, has_ground) } else { 0..0 };
+    let in_view = if has_field { rows::cloud_rows(frame) } else { 0..0 };
     let runs = why.unless(
         Effect::Clouds,
         &[

@@ -101,11 +101,10 @@ pub(super) fn open_rows(frame: &Frame<'_>) -> u32 {
     u32::try_from((0..frame.render_size()[1]).take_while(is_open).count()).unwrap_or(0)
 }
 
-/// Rows of the picture that may hold cloud: none, or those from the first to the last that may. `has_ground` says whether
-/// the sea ends rays below the horizon.
-pub(super) fn cloud_rows(frame: &Frame<'_>, has_ground: bool) -> Range<u32> {
+/// Rows of the picture that may hold cloud: none, or those from the first to the last that may.
+pub(super) fn cloud_rows(frame: &Frame<'_>) -> Range<u32> {
     let elevations = Elevations::new(frame);
-    let space = CloudSpace::new(frame, has_ground);
+    let space = CloudSpace::new(frame);
     let may_hold = |row: &u32| space.is_met(elevations.of_row(*row));
     let rows = frame.render_size()[1];
     match ((0..rows).find(may_hold), (0..rows).rev().find(may_hold)) {
@@ -117,7 +116,6 @@ pub(super) fn cloud_rows(frame: &Frame<'_>, has_ground: bool) -> Range<u32> {
 /// The space that clouds can be in, as the eye sees it.
 struct CloudSpace<'a> {
     frame: &'a Frame<'a>,
-    has_ground: bool,
     eye_m: f64,
     base_m: f64,
     top_m: f64,
@@ -125,11 +123,10 @@ struct CloudSpace<'a> {
 }
 
 impl<'a> CloudSpace<'a> {
-    fn new(frame: &'a Frame<'a>, has_ground: bool) -> Self {
+    fn new(frame: &'a Frame<'a>) -> Self {
         let layers = || frame.scene.visible_layers();
         Self {
             frame,
-            has_ground,
             eye_m: f64::from(frame.scene.camera.height_m),
             base_m: layers().map(|layer| f64::from(layer.base_m)).fold(f64::INFINITY, f64::min),
             top_m: layers().map(|layer| f64::from(layer.top_m)).fold(0.0, f64::max),
@@ -165,8 +162,7 @@ impl<'a> CloudSpace<'a> {
             // the sooner.
             let horizon = -dip_rad(self.frame.scene.camera.height_m.max(relief_m), radius_m);
             let steepest = highest.min(std::f64::consts::FRAC_PI_2);
-            return !self.has_ground
-                || (highest >= horizon && self.to_sphere(self.base_m, steepest.max(horizon), false) <= self.reach_m);
+            return highest >= horizon && self.to_sphere(self.base_m, steepest.max(horizon), false) <= self.reach_m;
         }
         if self.eye_m <= self.top_m {
             return true;
