@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use nephoscope::gpu::readback;
-use nephoscope::lab::verify::anywhere;
+use nephoscope::lab::verify::{anywhere, skies};
 use nephoscope::plan::{Effect, Forced, FramePlan, Need};
 use nephoscope::render::{programs, shaders::TABLE};
 use nephoscope::scene::builtin::BUILTINS;
@@ -336,6 +336,43 @@ fn scenes(effect: Effect) -> Example {
     }
 }
 
+/// Scenes in which an effect only just runs: a rule that leaves it out a little too early changes them.
+fn borders(effect: Effect) -> &'static [Change] {
+    match effect {
+        Effect::Sunshafts => &[|s| {
+            low_sun(s);
+            s.scene.weather.coverage = 0.1;
+            (s.scene.sunshafts.strength, s.scene.sunshafts.length_deg) = (4.0, 90.0);
+            (s.scene.camera.field_of_view_axis, s.scene.camera.field_of_view_deg) = (FieldOfViewAxis::Horizontal, 90.0);
+            s.look(8.0, 90.0 + 110.0);
+        }],
+        Effect::SunDisc => &[|s| {
+            at_the_sun(s);
+            let sun = s.scene.sun.clone();
+            s.scene.camera.field_of_view_deg = 20.0;
+            s.look(sun.elevation_deg - 7.0, sun.azimuth_deg + 12.0);
+        }],
+        Effect::MoonlitAir => &[|s| (s.scene.sun.elevation_deg, s.scene.display.exposure_ev) = (-8.0, 0.0)],
+        Effect::Stars => &[|s| {
+            s.scene.sun.elevation_deg = -8.0;
+            (s.scene.weather.coverage, s.scene.camera.pitch_deg, s.scene.display.exposure_ev) = (0.0, 50.0, -2.0);
+        }],
+        Effect::Ground => &[|s| (s.scene.camera.pitch_deg, s.scene.camera.field_of_view_deg) = (24.0, 50.0), mountains],
+        Effect::Clouds => &[
+            |s| (s.scene.camera.pitch_deg, s.scene.weather.coverage) = (-23.0, 1.0),
+            |s| (s.scene.camera.pitch_deg, s.scene.camera.height_m, s.scene.weather.coverage) = (20.0, 9000.0, 1.0),
+        ],
+        Effect::KeyLight => &[|s| {
+            (s.scene.sun.elevation_deg, s.scene.moon.enabled) = (-1.0, false);
+        }],
+        Effect::CloudShadows => &[|s| {
+            looking_down(s);
+            s.scene.sun.elevation_deg = 3.0;
+        }],
+        _ => &[],
+    }
+}
+
 /// All flags and all bindings of the programs a plan may ask for.
 fn traces(plan: &FramePlan) -> (BTreeSet<String>, BTreeSet<String>) {
     let (mut flags, mut bindings) = (BTreeSet::new(), BTreeSet::new());
@@ -451,6 +488,22 @@ fn each_effect_is_seen_somewhere() {
 }
 
 #[test]
+fn each_effect_runs_up_to_its_border() {
+    let mut failures = Vec::new();
+    for effect in Effect::ALL {
+        for (index, change) in borders(*effect).iter().enumerate() {
+            let setup = Setup::new(*change);
+            let verdict = setup.plan(Forced::default()).verdict(*effect).clone();
+            let off = Forced::default().with(*effect, Some(false));
+            if !verdict.runs || picture(&setup, Forced::default()) == picture(&setup, off) {
+                failures.push(format!("{}, border {index}: {}", effect.info().name, verdict.line()));
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
 fn absent_passes_do_not_run() {
     let mut failures = Vec::new();
     for effect in Effect::ALL.iter().filter(|effect| !effect.info().passes.is_empty()) {
@@ -473,13 +526,17 @@ fn absent_passes_do_not_run() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Built-in skies from places that nobody chose: all that is needless, forced on at once.
+/// Built-in skies from places that nobody chose, and skies that nobody made: all that is needless, forced on at once.
 #[test]
 fn leaving_everything_needless_out_changes_nothing() {
-    let mut failures = Vec::new();
-    for (index, builtin) in (0..).zip(BUILTINS) {
+    let builtin = (0..).zip(BUILTINS).map(|(index, builtin)| {
         let scene = builtin.preset().unwrap_or_else(|error| panic!("{error}")).scene;
         let scene = if index % 3 == 0 { scene } else { anywhere(&scene, index) };
+        (builtin.name.to_owned(), scene)
+    });
+    let drawn = (0..24).map(|index| (format!("sky {index}"), skies::draw(index, 8).scene));
+    let mut failures = Vec::new();
+    for (name, scene) in builtin.chain(drawn) {
         let setup = Setup { scene, quality: quick(), output: Output::Linear };
         let planned = setup.plan(Forced::default());
         let needless = planned.verdicts.iter().filter(|verdict| verdict.need == Need::Needless);
@@ -490,7 +547,7 @@ fn leaving_everything_needless_out_changes_nothing() {
         }
         let difference = picture(&setup, Forced::default()).difference(&picture(&setup, forced));
         if difference > may_differ {
-            failures.push(format!("{}: {difference} > {may_differ}", builtin.name));
+            failures.push(format!("{name}: {difference} > {may_differ}"));
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
