@@ -15,9 +15,10 @@ use nephoscope::images::map::decode_map_image;
 use nephoscope::images::pattern::{FramePattern, parse_frame_range};
 use nephoscope::images::voxels::VoxelGrid;
 use nephoscope::scene::builtin::BUILTINS;
+use nephoscope::scene::param::Choice as _;
 use nephoscope::scene::preset::{quality_from_ron, quality_to_ron};
 use nephoscope::scene::random::Stream;
-use nephoscope::scene::{Preset, Quality, Scene, edit};
+use nephoscope::scene::{Preset, Quality, QualityLevel, Scene, edit};
 
 /// Longest execution.
 const LONGEST: Duration = Duration::from_secs(2);
@@ -171,6 +172,8 @@ fn pictures(folder: &Path) -> Result<[Vec<u8>; 2], Box<dyn Error>> {
 
 fn targets(folder: &Path) -> Result<Vec<Target>, Box<dyn Error>> {
     let presets: Vec<Vec<u8>> = BUILTINS.iter().map(|builtin| builtin.ron.into()).collect();
+    let qualities: Vec<Vec<u8>> =
+        QualityLevel::ALL.iter().map(|level| quality_to_ron(&Quality::level(*level)).into()).collect();
     let [png, exr] = pictures(folder)?;
     let grid = VoxelGrid::new([3, 2, 2], vec![0.25; 12]).ok_or("a sound grid")?;
     let (mut npy, mut vol) = (Vec::new(), Vec::new());
@@ -181,7 +184,7 @@ fn targets(folder: &Path) -> Result<Vec<Target>, Box<dyn Error>> {
     let target = |name, seeds, words, run| Target { name, seeds, words, run };
     Ok(vec![
         target("preset", presets, RON, feed_preset),
-        target("quality", vec![quality_to_ron(&Quality::default()).into()], RON, feed_quality),
+        target("quality", qualities, RON, feed_quality),
         target(
             "edit",
             ["layers.0.base_m=1200", "quality.view_steps=64", "sun.colour=(1,0.5,0.25)", "domain.kind=Box"]

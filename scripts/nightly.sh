@@ -6,6 +6,9 @@ set -euo pipefail
 
 cargo build --locked --bin nephoscope
 "$program" verify --full
+"$program" verify --skies 2000 --kinds 50
+scripts/swiftshader.sh 200
+scripts/fuzz.sh all 100000
 "$program" accuracy all --size 96x54 --rounds 5 --tolerance 0.01 --md
 # Cameras and suns that nobody tuned.
 "$program" accuracy fair_weather --views 20 --size 96x54 --rounds 1 --tolerance 0.01 --seeds 4 --md

@@ -24,10 +24,15 @@ impl Recovery {
         let path = folder.join("recovery.ron");
         let left = path.exists().then(|| {
             Preset::load(&path).map_err(|error| {
-                let aside = folder.join("recovery-damaged.ron");
-                // Where it cannot be moved it stays, and is still named below.
-                let _ = std::fs::rename(&path, &aside);
-                format!("the copy of unsaved work is damaged and kept as {}: {error}", aside.display())
+                let name = |index: u32| folder.join(format!("recovery-damaged-{index}.ron"));
+                let aside = (1..1000).map(name).find(|aside| !aside.exists()).unwrap_or_else(|| name(1000));
+                match std::fs::rename(&path, &aside) {
+                    Ok(()) => format!("the copy of unsaved work is damaged and kept as {}: {error}", aside.display()),
+                    Err(why) => format!(
+                        "the copy of unsaved work is damaged and cannot be put aside, copy {} yourself: {error}; {why}",
+                        path.display()
+                    ),
+                }
             })
         });
         (Self { path, written: None, last: Instant::now() }, left)
@@ -99,11 +104,11 @@ mod tests {
         std::fs::write(folder.path().join("recovery.ron"), "(version: 2, scene: (lay").expect("written");
         let (mut recovery, left) = Recovery::open(folder.path());
         let said = left.expect("something was there").expect_err("it is no preset");
-        assert!(said.contains("recovery-damaged.ron"), "{said}");
+        assert!(said.contains("recovery-damaged-1.ron"), "{said}");
         let mut document = Document::new(Preset::default(), Quality::default());
         document.apply(&Action::Rename("Next".to_owned()));
         recovery.keep(&document);
-        let aside = std::fs::read_to_string(folder.path().join("recovery-damaged.ron")).expect("kept");
+        let aside = std::fs::read_to_string(folder.path().join("recovery-damaged-1.ron")).expect("kept");
         assert!(aside.ends_with("(lay"), "as it was");
         assert_eq!(Recovery::open(folder.path()).1.expect("a copy").expect("a sound one").name, "Next");
     }

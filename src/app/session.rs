@@ -168,6 +168,10 @@ impl Session {
                 self.replace(request)
             }
             Answer::Save => match self.document.path().cloned() {
+                Some(path) if self.is_changed_by_others(&path) => {
+                    self.pending = None;
+                    None
+                }
                 Some(path) => {
                     let saved = self.save_to(&path);
                     self.go_on_after_saving(saved)
@@ -196,7 +200,7 @@ impl Session {
         if self.warned_of.take().as_deref() == Some(path) || !path.exists() {
             return false;
         }
-        let is_same = Preset::load(path).is_ok_and(|on_disk| on_disk == *self.document.saved());
+        let is_same = Preset::load(path).is_ok_and(|on_disk| on_disk.is_as_saved(self.document.saved(), path));
         if !is_same {
             self.ui.toasts.error(format!(
                 "{} was changed since it was opened: Save as keeps both, Save once more overwrites it",

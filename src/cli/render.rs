@@ -65,7 +65,8 @@ pub(super) struct RenderArgs {
     /// Codec of an EXR.
     #[arg(long, default_value = "zip")]
     compression: CompressionArg,
-    /// Look at every value that each pass writes, and fail at the first that is not finite.
+    /// Render each picture once more as a frame of the window, look at the values that each pass writes, and fail at the
+    /// first that is not finite.
     #[arg(long)]
     watch: bool,
     /// Print one line of JSON for each file.
@@ -304,6 +305,7 @@ fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, t
     if args.watch || is_broken {
         watch(renderer, &frame).with_context(|| format!("{} was not written", path.display()))?;
     }
+    anyhow::ensure!(!is_broken, "{} was not written: it holds values that are not finite", path.display());
     match linear {
         Some(linear) => save_exr(path, &linear.image, &about, args.exr_options()).map(|_| ())?,
         None => {

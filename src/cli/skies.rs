@@ -7,7 +7,6 @@ use anyhow::{Context as _, Result};
 use clap::Args;
 
 use super::interrupt::{self, Interrupted};
-use super::print;
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
 use crate::lab::bench::Stats;
@@ -140,11 +139,11 @@ pub(super) fn run(renderer: &mut Renderer, args: &SkiesArgs, count: u64) -> Resu
                 let least = skies::shrink(&drawn, &mut is_faulty)?;
                 said = format!("{said}; {}", keep(folder, index, least)?.display());
             }
-            print(&format!("{said}\n"))?;
+            eprintln!("{said}");
             failed.push(index);
         }
         if (done + 1) % REPORT == 0 {
-            print(&format!("{} of {count} skies, {} with faults\n", done + 1, failed.len()))?;
+            eprintln!("{} of {count} skies, {} with faults", done + 1, failed.len());
         }
     }
     if let Some(path) = &args.save {
@@ -152,7 +151,7 @@ pub(super) fn run(renderer: &mut Renderer, args: &SkiesArgs, count: u64) -> Resu
         write_atomically(path, |file| file.write_all(&bytes).map_err(|cause| ExportError::writing(path, cause)))?;
     }
     if expected.is_some() {
-        print(&agreement.line())?;
+        eprint!("{}", agreement.line());
     }
     let shown = count.saturating_sub(args.from);
     let share = |test: &dyn Fn(f64) -> bool| {

@@ -115,6 +115,17 @@ impl Preset {
         Ok(preset)
     }
 
+    /// Whether a preset that was read from `path` is another one as that is written there: names of files may be written
+    /// relative to the preset.
+    pub fn is_as_saved(&self, other: &Self, path: &Path) -> bool {
+        let mut other = other.clone();
+        let folder = folder_of(path);
+        for name in files_of(&mut other.scene) {
+            *name = folder.join(&*name).display().to_string();
+        }
+        *self == other
+    }
+
     /// Writes the preset, or leaves the old file as it was.
     ///
     /// # Errors

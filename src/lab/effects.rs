@@ -2,13 +2,12 @@
 //! other way, in turns.
 
 use super::bench::{Case, Row, Stats};
+use super::colour::luminance;
 use super::table::{Cell, Table};
 use crate::plan::{Effect, Forced, FramePlan, Verdict};
 use crate::render::{Counts, RenderError, Renderer};
 use crate::scene::{Frame, Output};
 
-/// Luminance weights of linear Rec.709.
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// Share of the picture's mean light below which differences are not relative any more.
 const DARK: f64 = 0.05;
 
@@ -52,7 +51,7 @@ pub fn facts(renderer: &mut Renderer, case: &Case) -> Result<Facts, RenderError>
     renderer.render(&frame)?;
     let bytes = renderer.memory_bytes();
     renderer.render(&Frame { output: Output::Linear, ..frame })?;
-    let luminance = |pixel: &[f32; 4]| LUMINANCE.iter().zip(pixel).map(|(w, v)| w * f64::from(*v)).sum();
+    let luminance = |pixel: &[f32; 4]| luminance([pixel[0], pixel[1], pixel[2]]);
     let luminance = renderer.linear()?.rgba.iter().map(luminance).collect();
     Ok(Facts { counts, bytes, luminance })
 }

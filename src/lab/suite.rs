@@ -97,7 +97,8 @@ impl Suite {
         self.begun()
             .map(|((part, measurement), facts)| {
                 let rounds = measurement.rounds_text();
-                let partial = if measurement.next_turn().is_some() { ", PARTIAL" } else { "" };
+                let is_partial = measurement.next_turn().is_some() || uncounted(*part, measurement, facts).is_some();
+                let partial = if is_partial { ", PARTIAL" } else { "" };
                 let said = format!("{source}; {rounds}{partial}");
                 let rows = measurement.rows();
                 match part {

@@ -82,7 +82,7 @@ effects! {
         flags: ["TERRAIN"], bindings: ["terrain_map"], passes: ["bake_terrain"]
     }
     GroundEverywhere ("ground in open rows", "A search for ground in rows of the picture that lie above all of it.") {
-        flags: [], bindings: [], passes: []
+        flags: [], bindings: [], passes: [], essential: true
     }
     CloudShadows ("cloud shadows", "Shadows of clouds on the ground.") {
         flags: ["SHADOW"], bindings: ["cloud_shadow"], passes: ["cloud_shadow"]
@@ -91,7 +91,7 @@ effects! {
         flags: ["CLOUDS"], bindings: ["cloud"], passes: ["march"]
     }
     CloudsEverywhere ("clouds in clear rows", "A march in rows of the picture that no cloud can be in.") {
-        flags: [], bindings: [], passes: []
+        flags: [], bindings: [], passes: [], essential: true
     }
     Profile ("profile model", "Clouds from height profiles, billows and wisps.") {
         flags: ["PROFILE"], bindings: [], passes: []

@@ -47,6 +47,9 @@ pub struct GroundPlan {
     pub open_rows: u32,
 }
 
+/// Where the rays of reference integrators end that meet nothing.
+pub const FURTHEST_M: f32 = 500_000.0;
+
 /// What of the sky is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SkyPlan {
@@ -75,6 +78,8 @@ pub struct FramePlan {
     pub ground: Option<GroundPlan>,
     /// How the clouds are read, where the view or a shadow map needs them.
     pub march: Option<MarchVariant>,
+    /// Whether layers may hold cloud, in view or not: what was made for them is kept until they come into view again.
+    pub holds_clouds: bool,
     /// Rows of the picture that are marched; none where no cloud can be in view.
     pub cloud_rows: Range<u32>,
     /// Which pixels are computed, where not all are.
@@ -133,6 +138,7 @@ impl FramePlan {
             sky,
             ground: ground.map(|ground| GroundPlan { shadow_px, ..ground }),
             march,
+            holds_clouds: has_field && forced.get(Effect::Clouds) != Some(false),
             cloud_rows,
             temporal,
             sunshafts,
@@ -156,7 +162,11 @@ impl FramePlan {
     pub fn for_still(frame: &Frame<'_>, (integrator, pixel_samples): (Integrator, u32), forced: Forced) -> Self {
         let is_traced = integrator == Integrator::PathTraced;
         let pixel_samples = if is_traced { 1 } else { pixel_samples.max(1) };
-        let whole = Quality { update: UpdateFraction::Full, ..frame.quality.clone() };
+        let mut whole = Quality { update: UpdateFraction::Full, ..frame.quality.clone() };
+        if integrator != Integrator::Realtime {
+            // How far the march looks is its own affair.
+            whole.max_distance_m = FURTHEST_M;
+        }
         let mut plan = Self::forced(&Frame { quality: &whole, ..*frame }, forced);
         (plan.tracks, plan.pixel_samples) = (is_traced, pixel_samples);
         if integrator != Integrator::Realtime && plan.has_clouds() {
@@ -180,6 +190,14 @@ impl FramePlan {
     /// Whether an effect runs.
     pub fn runs(&self, effect: Effect) -> bool {
         self.verdict(effect).runs
+    }
+
+    /// The same for a picture from another place: what it looked past may be in view there.
+    #[must_use]
+    pub fn from_anywhere(self, rows: u32) -> Self {
+        let ground = self.ground.map(|ground| GroundPlan { open_rows: 0, ..ground });
+        let cloud_rows = if self.has_clouds() { 0..rows } else { 0..0 };
+        Self { ground, cloud_rows, ..self }
     }
 
     /// Whether a scene of the other plan holds everything that this one draws from.

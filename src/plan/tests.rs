@@ -161,3 +161,17 @@ fn stills_march_all_pixels_several_times_and_paths_have_samples_of_their_own() {
     let traced = FramePlan::for_still(&frame, (Integrator::PathTraced, 4), Forced::default());
     assert_eq!((traced.pixel_samples, traced.tracks), (1, true));
 }
+
+#[test]
+fn truths_look_farther_than_the_march_is_allowed_to() {
+    let mut scene = Scene::default();
+    (scene.layers[0].base_m, scene.layers[0].top_m) = (8000.0, 9000.0);
+    (scene.camera.pitch_deg, scene.camera.field_of_view_deg, scene.camera.height_m) = (1.0, 2.0, 20.0);
+    let quality = Quality { max_distance_m: 20_000.0, ..Quality::default() };
+    let frame = Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output: Output::Display };
+    assert!(!FramePlan::new(&frame).has_clouds(), "the march sees none so far away");
+    for integrator in [Integrator::Converged, Integrator::PathTraced] {
+        let plan = FramePlan::for_still(&frame, (integrator, 1), Forced::default());
+        assert!(plan.has_clouds() && plan.march.is_some_and(|march| march.lit), "{integrator:?}");
+    }
+}

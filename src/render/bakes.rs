@@ -59,11 +59,13 @@ impl Bakes {
     ) -> Result<(), GpuError> {
         let march = plan.march;
         let wants = |test: fn(MarchVariant) -> bool| march.is_some_and(test);
-        noise_3d(context, &mut self.shape, wants(MarchVariant::reads_shape), &SHAPE, jobs)?;
-        noise_3d(context, &mut self.worley, wants(|march| march.thesis), &WORLEY, jobs)?;
-        noise_3d(context, &mut self.detail, wants(|march| march.detail), &DETAIL, jobs)?;
+        // Clouds that are out of view come back.
+        let kept = march.is_none() && plan.holds_clouds;
+        noise_3d(context, &mut self.shape, (wants(MarchVariant::reads_shape), kept), &SHAPE, jobs)?;
+        noise_3d(context, &mut self.worley, (wants(|march| march.thesis), kept), &WORLEY, jobs)?;
+        noise_3d(context, &mut self.detail, (wants(|march| march.detail), kept), &DETAIL, jobs)?;
         if !wants(|march| march.curl) {
-            self.curl = None;
+            self.curl = self.curl.take().filter(|_| kept);
         } else if self.curl.is_none() {
             let texture = Texture::new_2d(context.gpu, "curl_noise", [CURL_SIDE; 2], FORMAT)?;
             let bound = vec![("noise_out", wgpu::BindingResource::TextureView(&texture.view))];
@@ -179,12 +181,12 @@ const DETAIL: Noise = Noise { pass: "bake_detail", file: "pass/bake_detail.wgsl"
 fn noise_3d(
     context: &Context<'_>,
     slot: &mut Option<Texture>,
-    wanted: bool,
+    (wanted, kept): (bool, bool),
     noise: &Noise,
     jobs: &mut Vec<Job>,
 ) -> Result<(), GpuError> {
     if !wanted {
-        *slot = None;
+        *slot = slot.take().filter(|_| kept);
         return Ok(());
     }
     if slot.is_some() {

@@ -69,6 +69,11 @@ impl Clearance {
         self.made.iter().map(|(_, ways)| ("clear_ways", view_of(ways))).collect()
     }
 
+    /// The ways themselves.
+    pub(super) fn texture(&self) -> Option<&Texture> {
+        self.made.as_ref().map(|(_, ways)| ways)
+    }
+
     /// Forgets everything, as when no cloud is drawn.
     pub(super) fn clear(&mut self) {
         self.made = None;

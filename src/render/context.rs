@@ -115,9 +115,13 @@ impl Context<'_> {
         bound: &Bound<'_>,
         extent: Extent,
     ) -> Result<Vec<Job>, GpuError> {
-        let program = self.program(key)?;
         let axis = extent.band_axis();
         let all = extent.size[axis];
+        if extent.first_row >= all {
+            // What is not run is not compiled.
+            return Ok(Vec::new());
+        }
+        let program = self.program(key)?;
         let step = extent.group[axis];
         let rows = self.slice_ms.map_or(all, |slice_ms| self.pace.rows(pass, all, slice_ms)).next_multiple_of(step);
         let mut jobs = Vec::new();

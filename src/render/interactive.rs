@@ -41,7 +41,9 @@ impl Renderer {
         let mut plan = FramePlan::forced(frame, self.forced);
         if !self.is_ready(&plan)? {
             match self.last_plan.clone() {
-                Some(last) if last != plan && last.fits(&plan) && self.is_ready(&last)? => plan = last,
+                Some(last) if last != plan && last.fits(&plan) && self.is_ready(&last)? => {
+                    plan = last.from_anywhere(frame.render_size()[1]);
+                }
                 _ => {
                     self.is_compiling = true;
                     return Ok(());

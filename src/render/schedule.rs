@@ -103,8 +103,12 @@ impl Renderer {
                 self.weather.update(&context, &scene.weather, frame.time_secs, &mut jobs)?;
                 let tracks = plan.tracks && march.baked.is_none();
                 self.weather.update_bounds(&context, tracks, &mut jobs)?;
-                self.clearance.update(&context, (frame, march), &self.weather, &mut jobs)?;
+                // Shadows alone need no clear ways; a view that turns back does.
+                if march.skip || plan.has_clouds() {
+                    self.clearance.update(&context, (frame, march), &self.weather, &mut jobs)?;
+                }
             }
+            None if plan.march.is_none() && plan.holds_clouds => {}
             None => {
                 self.weather.clear();
                 self.clearance.clear();

@@ -60,6 +60,9 @@ pub(super) struct Voxels {
 impl Voxels {
     /// Reads the file that the plan calls for, if it is not there; lets go of another.
     pub(super) fn read(&mut self, gpu: &Gpu, scene: &Scene, plan: &FramePlan) -> Result<(), RenderError> {
+        if plan.march.is_none() && plan.holds_clouds {
+            return Ok(());
+        }
         self.update_file(gpu, scene, plan.march.is_some_and(|march| march.grid))
     }
 
@@ -73,7 +76,7 @@ impl Voxels {
         jobs: &mut Vec<Job>,
     ) -> Result<(), RenderError> {
         let Some(march) = plan.march else {
-            self.baked = None;
+            self.baked = self.baked.take().filter(|_| plan.holds_clouds);
             return Ok(());
         };
         self.update_baked(context, (frame, march), (inputs, map), jobs)?;
@@ -142,6 +145,12 @@ impl Voxels {
         jobs.extend(context.banded("bake_voxels", &bake_key(march), &bound, Extent::solid(size))?);
         self.baked = Some(Made { from, values, bound: None });
         Ok(())
+    }
+
+    /// The voxels themselves with the pass that made them.
+    pub(super) fn textures(&self) -> impl Iterator<Item = (&'static str, &Texture)> {
+        let file = self.file.iter().map(|file| ("voxels of a file", &file.values));
+        file.chain(self.baked.iter().map(|baked| ("bake_voxels", &baked.values)))
     }
 
     /// Whichever voxels are marched, by the names shaders give them.

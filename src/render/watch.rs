@@ -31,7 +31,8 @@ pub fn programs() -> [ProgramKey; 2] {
 }
 
 impl Renderer {
-    /// Looks at everything that the last frame read and wrote, in the order in which it was made: one read for each texel.
+    /// Looks at the tables, noises, maps, voxels and targets of the last frame, in the order in which they were made: one read
+    /// for each texel.
     /// The first entry is where the fault began; empty is well.
     ///
     /// # Errors
@@ -74,6 +75,8 @@ impl Renderer {
         }
         all.extend(self.bakes.textures());
         all.extend(self.weather.map().map(|map| ("weather_map", map)));
+        all.extend(self.voxels.textures());
+        all.extend(self.clearance.texture().map(|ways| ("clear_spread", ways)));
         let Some(targets) = &self.targets else { return all };
         all.extend(targets.cloud_shadow.iter().map(|texture| ("cloud_shadow", texture)));
         all.push(("background", &targets.background));

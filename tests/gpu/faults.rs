@@ -72,3 +72,25 @@ fn the_watch_counts_what_is_not_finite_and_finds_nothing_in_a_sound_frame() {
     let broken = renderer.find_broken().unwrap_or_else(|error| panic!("{error}"));
     assert!(broken.is_empty(), "{broken:?}");
 }
+
+#[test]
+fn what_was_made_for_clouds_is_kept_while_nobody_looks_at_them() {
+    let mut renderer = renderer();
+    let mut passes_at = |pitch_deg: f32, cloud_shadows: f32| -> Vec<&'static str> {
+        let mut scene = Scene::default();
+        (scene.camera.pitch_deg, scene.ground.cloud_shadows) = (pitch_deg, cloud_shadows);
+        let quality = quick();
+        let report = renderer.render(&frame(&scene, &quality, [32, 18], Output::Linear));
+        report.unwrap_or_else(|error| panic!("{error}")).passes.iter().map(|time| time.pass).collect()
+    };
+    passes_at(14.0, 1.0);
+    for cloud_shadows in [1.0, 0.0] {
+        assert!(!passes_at(-80.0, cloud_shadows).contains(&"march"), "the view misses the clouds");
+        let again = passes_at(14.0, cloud_shadows);
+        let made: Vec<&&str> = again
+            .iter()
+            .filter(|pass| pass.starts_with("bake") || pass.starts_with("clear") || **pass == "weather_map")
+            .collect();
+        assert!(again.contains(&"march") && made.is_empty(), "made anew: {made:?}");
+    }
+}

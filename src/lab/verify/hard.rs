@@ -57,10 +57,10 @@ const CASES: [(&str, Case); 19] = [
     ("the same picture twice", twice),
 ];
 
-/// Tries all cases; `tell` hears of each as it is found.
+/// Tries all cases.
 ///
 /// # Errors
-/// [`VerifyError::Render`] and [`VerifyError::Gpu`], or what `tell` reports.
+/// [`VerifyError::Render`] and [`VerifyError::Gpu`].
 pub fn hard_cases(renderer: &mut Renderer) -> Result<Vec<Check>, VerifyError> {
     let mut checks = Vec::new();
     for (name, case) in CASES {
@@ -316,7 +316,7 @@ fn days_of_wind(renderer: &mut Renderer) -> Result<Finding, VerifyError> {
     for tiles in [1.0, 1e3, 1e6] {
         worst = worst.max(show_at(renderer, (&of.0, &of.1), SIZE, 1200.0 * tiles)?.difference(&first));
     }
-    Ok(Finding::below(worst, 1e-3, "change after whole tiles of wind, relative RMS,"))
+    Ok(Finding::below(worst, 1e-5, "change after whole tiles of wind, relative RMS,"))
 }
 
 fn far_away(renderer: &mut Renderer) -> Result<Finding, VerifyError> {
@@ -327,7 +327,7 @@ fn far_away(renderer: &mut Renderer) -> Result<Finding, VerifyError> {
         (scene.camera.east_m, scene.camera.south_m) = (24_000.0 * tiles, -24_000.0 * tiles);
         worst = worst.max(show(renderer, &scene, &quality())?.difference(&first));
     }
-    Ok(Finding::below(worst, 1e-3, "change after whole tiles of way, relative RMS,"))
+    Ok(Finding::below(worst, 1e-5, "change after whole tiles of way, relative RMS,"))
 }
 
 fn any_time(renderer: &mut Renderer) -> Result<Finding, VerifyError> {

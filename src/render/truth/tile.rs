@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::settings::{Goal, Level};
 use super::{Integrator, RenderError, TruthCounts};
 use crate::gpu::{Gpu, Job, ProgramCache, ProgramKey, job, readback};
-use crate::plan::MarchVariant;
+use crate::plan::{FURTHEST_M, MarchVariant};
 use crate::render::context::Bound;
 use crate::render::uniforms::other::TruthUniforms;
 use crate::render::uniforms::scene::BandUniforms;
@@ -204,7 +204,7 @@ impl Tiles {
             light_steps: steps.light_steps,
             view_step_m: steps.view_step_m,
             view_growth: steps.view_growth,
-            furthest_m: 500_000.0,
+            furthest_m: FURTHEST_M,
             work_per_dispatch: u32::MAX,
             pad0: 0.0,
             pad1: 0.0,
