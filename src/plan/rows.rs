@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec2;
 
 use super::view::dip_rad;
-use crate::scene::{DomainKind, Frame, Projection};
+use crate::scene::{DomainKind, Frame, Ground, Projection};
 
 /// Distance from the world's origin at which relief begins, and by which ranges and hills have risen; as
 /// `pass/terrain.wgsl` has them.
@@ -25,10 +25,11 @@ fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
 /// Tangent of the greatest elevation at which the eye can see ground; infinite where it may stand inside of a hill.
 fn highest_ground(frame: &Frame<'_>) -> f64 {
     let (ground, camera) = (&frame.scene.ground, &frame.scene.camera);
+    let [ranges, hills] = Ground::RELIEF_BOUND;
     let out = f64::from(camera.east_m).hypot(camera.south_m.into());
     let height = |out: f64| {
-        1.25 * f64::from(ground.mountains_m) * smoothstep(PLAIN_M, RANGES_FROM_M, out)
-            + 1.15 * f64::from(ground.hills_m) * smoothstep(PLAIN_M, HILLS_FROM_M, out)
+        f64::from(ranges * ground.mountains_m) * smoothstep(PLAIN_M, RANGES_FROM_M, out)
+            + f64::from(hills * ground.hills_m) * smoothstep(PLAIN_M, HILLS_FROM_M, out)
     };
     let eye = f64::from(camera.height_m);
     if height(out) >= eye {
@@ -156,7 +157,7 @@ impl<'a> CloudSpace<'a> {
     fn is_shell_met(&self, lowest: f64, highest: f64) -> bool {
         let radius_m = self.frame.scene.domain.planet_radius_m;
         // An eye inside of a hill sees from above it.
-        let relief_m = 1.3 * (self.frame.scene.ground.hills_m + self.frame.scene.ground.mountains_m);
+        let relief_m = self.frame.scene.ground.highest_m();
         if self.eye_m < self.base_m {
             // Rays below the horizon end in the sea before they meet any; those above it meet the base once, the steeper
             // the sooner.

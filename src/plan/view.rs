@@ -40,7 +40,7 @@ pub(super) fn dip_rad(height_m: f32, planet_radius_m: f32) -> f64 {
 /// Whether all of a disc is below the horizon of the eye, wherever relief may have lifted it.
 pub(super) fn is_below_eye_horizon(frame: &Frame<'_>, towards: Vec3, radius_deg: f32) -> bool {
     let scene = frame.scene;
-    let relief_m = 1.3 * (scene.ground.hills_m + scene.ground.mountains_m);
+    let relief_m = scene.ground.highest_m();
     let dip = dip_rad(scene.camera.height_m.max(relief_m), scene.domain.planet_radius_m);
     let top_deg = f64::from(towards.y).clamp(-1.0, 1.0).asin().to_degrees() + f64::from(radius_deg + MARGIN_DEG);
     top_deg + dip.to_degrees() < 0.0

@@ -104,6 +104,17 @@ params! {
     }
 }
 
+impl Ground {
+    /// Greatest height of ranges and hills relative to what the parameters say.
+    pub const RELIEF_BOUND: [f32; 2] = [1.25, 1.15];
+
+    /// No ground is higher than this above the sea.
+    pub fn highest_m(&self) -> f32 {
+        let [ranges, hills] = Self::RELIEF_BOUND;
+        self.mountains_m * ranges + self.hills_m * hills
+    }
+}
+
 impl Camera {
     /// Tangents of half the angles that a lens spans, across and up a picture of this size.
     pub fn half_tangents(&self, [width, height]: [u32; 2]) -> [f32; 2] {

@@ -15,7 +15,7 @@ const EYE_M: [f32; 2] = [500.0, 2500.0];
 const MOST_SIGMAS: f64 = 3.5;
 /// What the picture's own width (a degree) and steps may make of it, relative.
 const OWN_ERROR: f64 = 0.002;
-/// Radiance, of a sun of irradiance 1, below which light is not told from none: a millionth of what the slabs send.
+/// Radiance, of a sun of irradiance 1, that is rounding: between dispatches a ray keeps its opacity, whose last bit is 6e-8.
 const LEAST_LIGHT: f64 = 1e-7;
 
 /// A slab over black ground, a sun of irradiance 1, and a direction of view.
@@ -112,8 +112,7 @@ fn mean(image: &TruthImage) -> (f64, f64) {
 }
 
 fn agrees(name: String, (seen, error): (f64, f64), expected: f64) -> Check {
-    // Far below what any pixel shows there is only rounding.
-    let own = OWN_ERROR * expected.max(LEAST_LIGHT);
+    let own = (OWN_ERROR * expected).max(LEAST_LIGHT);
     let sigmas = (seen - expected) / error.hypot(own);
     let figure = format!("{seen:.5} ± {error:.5}, expected {expected:.5}, {sigmas:+.1} σ");
     Check { name, holds: sigmas.abs() <= MOST_SIGMAS, figure }

@@ -23,7 +23,6 @@ pub(crate) fn ground_uniforms(scene: &Scene, lighting: &Lighting, eye: &Eye, sha
     let texel_m = 2.0 * SHADOW_REACH_M / f64::from(shadow_px.max(1));
     let snapped = |metres: f64| (metres / texel_m).round() * texel_m - metres;
     let shadow = |metres: f64| (0.5 - snapped(metres) / (2.0 * SHADOW_REACH_M)) as f32;
-    let relief_m = ground.mountains_m * 1.25 + ground.hills_m * 1.15;
     GroundUniforms {
         albedo: ground.albedo.vec(),
         planet_radius_m: scene.domain.planet_radius_m,
@@ -32,7 +31,7 @@ pub(crate) fn ground_uniforms(scene: &Scene, lighting: &Lighting, eye: &Eye, sha
         towards_light: lighting.towards_key,
         hills_m: ground.hills_m,
         light_illuminance: lighting.key_lux / lighting.candela_per_unit,
-        highest_m: relief_m,
+        highest_m: ground.highest_m(),
         tile_from_world: Vec4::new(tile(eye.position.x), tile(eye.position.z), (1.0 / tile_m) as f32, 0.0),
         shadow_from_world: Vec4::new(
             shadow(eye.position.x),
