@@ -31,7 +31,7 @@ pub(super) struct SkiesArgs {
     #[arg(long, default_value = "0", requires = "skies", value_name = "INDEX")]
     from: u64,
     /// Kinds of skies; those of a kind share their programs.
-    #[arg(long, default_value = "16", requires = "skies", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    #[arg(long, default_value = "50", requires = "skies", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     kinds: u64,
     /// Folder for what fails, made as simple as it can be, as presets.
     #[arg(long, requires = "skies", value_name = "FOLDER")]
