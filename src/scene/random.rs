@@ -49,12 +49,19 @@ fn narrow(number: f64) -> f32 {
     number as f32
 }
 
+/// The number at a place of its range, 0 to 1, as a slider has it; `None` without a range.
+pub fn between(info: &Info<f32>, at: f64) -> Option<f32> {
+    let range = info.range.as_ref()?;
+    let (low, high) = (f64::from(*range.start()), f64::from(*range.end()));
+    let drawn = if info.logarithmic && low > 0.0 { low * (high / low).powf(at) } else { low + (high - low) * at };
+    Some(narrow(drawn).clamp(*range.start(), *range.end()))
+}
+
 impl Visitor for Random {
     fn float(&mut self, info: &Info<f32>, value: &mut f32) {
-        let Some(range) = &info.range else { return };
-        let (low, high, at) = (f64::from(*range.start()), f64::from(*range.end()), self.stream.unit());
-        let drawn = if info.logarithmic && low > 0.0 { low * (high / low).powf(at) } else { low + (high - low) * at };
-        *value = narrow(drawn).clamp(*range.start(), *range.end());
+        if info.range.is_some() {
+            *value = between(info, self.stream.unit()).unwrap_or(*value);
+        }
     }
 
     fn count(&mut self, info: &Info<u32>, value: &mut u32) {

@@ -5,7 +5,7 @@ use super::VerifyError;
 use crate::plan::Lighting;
 use crate::render::Renderer;
 use crate::scene::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params as _, Visitor};
-use crate::scene::random::Stream;
+use crate::scene::random::{Stream, between};
 use crate::scene::{
     CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapLayer, MapSource, Output, PhaseKind, Quality, Scene,
 };
@@ -46,14 +46,6 @@ impl Drawing {
             _ => Some(inside),
         }
     }
-}
-
-#[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
-fn between(info: &Info<f32>, at: f64) -> Option<f32> {
-    let range = info.range.as_ref()?;
-    let (low, high) = (f64::from(*range.start()), f64::from(*range.end()));
-    let drawn = if info.logarithmic && low > 0.0 { low * (high / low).powf(at) } else { low + (high - low) * at };
-    Some((drawn as f32).clamp(*range.start(), *range.end()))
 }
 
 impl Visitor for Drawing {
