@@ -150,17 +150,23 @@ fn front(scene: &Scene, eye: &Eye, time_secs: f64) -> Vec4 {
 /// Way through the clouds, in metres, up to which the steps towards the light are as many as the quality says.
 const USUAL_WAY_M: f32 = 3000.0;
 /// How many times as many there are for the longest ways.
-const MOST_LIGHT_STEPS: f32 = 3.5;
+const MOST_LIGHT_STEPS: f32 = 5.0;
+/// Sine of the light's elevation below which it is low: ways through broken cloud then alternate between cloud and clear air
+/// far beyond the first cloud, where steps are long.
+const LOW_LIGHT: f32 = 0.2;
 
 /// Light steps that all view steps of a ray may take together. llvmpipe ends all loops of an invocation after 65,535 rounds,
 /// and no card should be asked for more of one pixel in one dispatch.
 const MOST_ITERATIONS: u32 = 48_000;
 
-/// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many.
+/// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many, and
+/// up to twice as many again if that is because the light is low.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
 fn light_steps(usual: u32, thickness_m: f32, light_sine: f32) -> u32 {
-    let way_m = thickness_m / light_sine.abs().max(0.02);
-    let more = (way_m / USUAL_WAY_M).powf(0.4).clamp(1.0, MOST_LIGHT_STEPS);
+    let sine = light_sine.abs().max(0.02);
+    let long = (thickness_m / sine / USUAL_WAY_M).powf(0.4).max(1.0);
+    let low = (LOW_LIGHT / sine).powf(0.3).max(1.0);
+    let more = (long * low).min(MOST_LIGHT_STEPS);
     ((usual as f32 * more).round() as u32).clamp(1, 128)
 }
 
@@ -278,7 +284,8 @@ mod tests {
     fn long_ways_towards_the_light_have_more_steps() {
         assert_eq!(light_steps(10, 1500.0, 0.7), 10, "a high sun over cumulus");
         assert_eq!(light_steps(10, 8500.0, 0.5), 20, "a little under six times the usual way");
-        assert_eq!((light_steps(10, 3000.0, 0.0), light_steps(10, 3000.0, -0.02)), (35, 35), "the horizon");
+        assert_eq!(light_steps(10, 900.0, 0.038), 38, "a deck at sunset");
+        assert_eq!((light_steps(10, 3000.0, 0.0), light_steps(10, 3000.0, -0.02)), (50, 50), "the horizon");
         assert_eq!((light_steps(1, 0.0, 1.0), light_steps(128, 9000.0, 0.1)), (1, 128), "at the ends");
     }
 
