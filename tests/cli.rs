@@ -1,21 +1,26 @@
 //! The program as a user meets it: exit codes, streams and messages.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
-/// Runs the program in a folder of its own, on the software driver and without a display.
-fn nephoscope(folder: &TempDir, args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_nephoscope"))
-        .args(args)
+const PROGRAM: &str = env!("CARGO_BIN_EXE_nephoscope");
+
+/// A program in a folder of its own, on the software driver and without a display.
+fn command(program: &str, folder: &TempDir) -> Command {
+    let mut command = Command::new(program);
+    command
         .current_dir(folder.path())
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
         .env("NEPHOSCOPE_ADAPTER", "llvmpipe")
-        .env("NO_COLOR", "1")
-        .output()
-        .expect("the program starts")
+        .env("NO_COLOR", "1");
+    command
+}
+
+fn nephoscope(folder: &TempDir, args: &[&str]) -> Output {
+    command(PROGRAM, folder).args(args).output().expect("the program starts")
 }
 
 fn folder() -> TempDir {
@@ -245,6 +250,69 @@ fn sequences_go_on_where_they_stopped() {
     assert_eq!([png_size(&frame(1)), png_size(&frame(5))], [[64, 36]; 2]);
     renders(&folder, &render("clear_puffs", "f.####.png", &["--frames", "3", "--overwrite"]));
     assert_eq!(png_size(&frame(3)), [64, 36], "--overwrite renders it");
+}
+
+/// The pictures in a folder, each of which has to be whole; and how many other files there are.
+#[track_caller]
+fn whole_pictures(folder: &TempDir) -> (usize, usize) {
+    let files = std::fs::read_dir(folder.path()).expect("a folder").map(|file| file.expect("a file").path());
+    let (pictures, others): (Vec<PathBuf>, Vec<PathBuf>) =
+        files.partition(|file| file.extension().is_some_and(|ending| ending == "exr"));
+    for picture in &pictures {
+        exr::prelude::read_first_flat_layer_from_file(picture).unwrap_or_else(|error| panic!("{picture:?}: {error}"));
+    }
+    (pictures.len(), others.len())
+}
+
+#[test]
+fn a_killed_sequence_leaves_whole_pictures_and_goes_on() {
+    let folder = folder();
+    let args = render("clear_puffs", "sky.####.exr", &["--frames", "1-40"]);
+    let mut before = 0;
+    for wanted in [1, 4, 9] {
+        let mut child = command(PROGRAM, &folder).args(&args).stderr(Stdio::null()).spawn().expect("it starts");
+        while before < wanted && child.try_wait().expect("it is ours").is_none() {
+            before = whole_pictures(&folder).0;
+        }
+        // No handler runs: this is `kill -9`.
+        child.kill().expect("it is ours");
+        child.wait().expect("it has ended");
+        let (pictures, others) = whole_pictures(&folder);
+        assert!((wanted..40).contains(&pictures), "{pictures} pictures when {wanted} were wanted");
+        assert!(others <= 3, "at most the one that was being written, each time");
+        before = pictures;
+    }
+    let rest = render("clear_puffs", "sky.####.exr", &["--frames", "1-12"]);
+    renders(&folder, &rest);
+    assert!(whole_pictures(&folder).0 >= 12, "what is missing is made");
+}
+
+#[test]
+fn a_disk_that_fills_keeps_what_was_finished_and_says_so() {
+    let folder = folder();
+    // A process may write files of so many KiB here, which fails as a full disk does: half way through a file.
+    let limited = |kibibytes: u32, args: &[&str]| {
+        let script = format!("trap '' XFSZ; ulimit -f {}; exec \"$0\" \"$@\"", kibibytes * 2);
+        let output = command("sh", &folder).args(["-c", &script, PROGRAM]).args(args).output();
+        output.expect("a shell starts")
+    };
+    let sequence = ["render", "clear_puffs", "-o", "sky.####.exr", "--frames", "1-2", "--quality", "draft"];
+    let small = limited(2000, &[&sequence[..], &["--size", "32x18"]].concat());
+    assert!(small.status.success(), "{}", stderr(&small));
+    let large = limited(40, &[&sequence[..], &["--size", "256x144", "--overwrite"]].concat());
+    assert_eq!(large.status.code(), Some(4), "{}", stderr(&large));
+    assert!(stderr(&large).contains("sky.0001.exr"), "{}", stderr(&large));
+    assert_eq!(whole_pictures(&folder), (2, 0), "the small ones are still there, and nothing else");
+}
+
+#[test]
+fn effects_are_forced_and_refused() {
+    let folder = folder();
+    renders(&folder, &render("thesis", "plain.png", &[]));
+    renders(&folder, &render("thesis", "forced.png", &["--force", "light-march=off", "--force", "stars=on"]));
+    let read = |name: &str| std::fs::read(folder.path().join(name)).expect("written");
+    assert_ne!(read("plain.png"), read("forced.png"), "the clouds are dark");
+    refuses(&folder, &render("thesis", "x.png", &["--force", "starz=on"]), 2, &["--force", "stars"]);
 }
 
 #[test]

@@ -48,6 +48,16 @@ pub enum Action {
     ResetTime,
     /// Seconds of the scene per second of the clock.
     SetTimeFactor(f64),
+    /// Take the last step back.
+    Undo,
+    /// Take it again.
+    Redo,
+    /// Go so many steps back (below 0) or forth in the history.
+    TravelHistory(isize),
+    /// The camera before the last flight.
+    ViewBack,
+    /// The camera after it.
+    ViewForth,
     /// Anything that concerns files, windows and threads rather than the document.
     Ask(Request),
 }
@@ -177,8 +187,18 @@ impl Action {
             Self::Play(false) => "pause".to_owned(),
             Self::ResetTime => "reset the time".to_owned(),
             Self::SetTimeFactor(_) => "set the speed of time".to_owned(),
+            Self::Undo => "undo".to_owned(),
+            Self::Redo => "redo".to_owned(),
+            Self::TravelHistory(_) => "go through the history".to_owned(),
+            Self::ViewBack => "camera back".to_owned(),
+            Self::ViewForth => "camera forth".to_owned(),
             Self::Ask(request) => request.name().to_owned(),
         }
+    }
+
+    /// Whether an edit is one of the camera.
+    pub fn concerns_camera(&self) -> bool {
+        matches!(self, Self::EditScene { key, .. } if key.split('.').next() == Some("camera"))
     }
 }
 

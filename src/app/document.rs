@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::action::Action;
-
+use super::history::{History, Scope, State, Views};
 use crate::scene::{Camera, Frame, Output, Preset, Quality, QualityLevel, SunPlacement};
 
 /// Slowest and fastest that time may run, in seconds of the scene per second of the clock.
@@ -19,12 +19,24 @@ pub struct Document {
     time_secs: f64,
     playing: bool,
     time_factor: f64,
+    history: History,
+    views: Views,
 }
 
 impl Document {
     /// A document that shows a preset which is not a file of the user's, with time standing.
     pub fn new(preset: Preset, quality: Quality) -> Self {
-        Self { saved: preset.clone(), preset, quality, path: None, time_secs: 0.0, playing: false, time_factor: 1.0 }
+        Self {
+            saved: preset.clone(),
+            preset,
+            quality,
+            path: None,
+            time_secs: 0.0,
+            playing: false,
+            time_factor: 1.0,
+            history: History::default(),
+            views: Views::default(),
+        }
     }
 
     /// The same for a preset that was read from, and is saved to, `path`.
@@ -113,8 +125,100 @@ impl Document {
         self.saved.name.push_str("before recovery");
     }
 
-    /// Carries out an action. Requests are not for the document and change nothing.
+    /// Becomes another document; the step can be undone.
+    pub fn replace_by(&mut self, other: Self, step: impl Into<String>) {
+        let before = self.state();
+        let (mut history, views) = (std::mem::take(&mut self.history), std::mem::take(&mut self.views));
+        history.record(step.into(), Scope::Document, before);
+        *self = Self { history, views, ..other };
+    }
+
+    /// Carries out an action and remembers how to undo it. Requests are not for the document and change nothing.
     pub fn apply(&mut self, action: &Action) {
+        match action {
+            Action::Undo => self.travel(-1),
+            Action::Redo => self.travel(1),
+            Action::TravelHistory(steps) => self.travel(*steps),
+            Action::ViewBack | Action::ViewForth => {
+                let now = &self.preset.scene.camera;
+                let camera = if *action == Action::ViewBack { self.views.back(now) } else { self.views.forth(now) };
+                self.preset.scene.camera = camera.unwrap_or_else(|| self.preset.scene.camera.clone());
+            }
+            Action::MoveCamera(_) | Action::ResetCamera => {
+                let before = self.preset.scene.camera.clone();
+                self.change(action);
+                if self.preset.scene.camera != before {
+                    self.views.leave(&before);
+                }
+            }
+            _ => {
+                let before = self.state();
+                self.change(action);
+                if self.preset != before.preset || self.quality != before.quality {
+                    let scope = if action.concerns_camera() { Scope::Camera } else { Scope::Sky };
+                    self.history.record(action.name(), scope, before);
+                }
+            }
+        }
+    }
+
+    /// Says whether the pointer is held: what it does until it is let go is one step.
+    pub fn hold(&mut self, is_held: bool) {
+        self.history.hold(is_held);
+    }
+
+    /// Names of the steps that can be undone, the oldest first, and of those that can be redone, the next first.
+    pub fn steps(&self) -> (Vec<&str>, Vec<&str>) {
+        self.history.names()
+    }
+
+    /// Whether there is a step to undo.
+    pub fn can_undo(&self) -> bool {
+        self.history.depth().0 > 0
+    }
+
+    /// Whether there is a step to redo.
+    pub fn can_redo(&self) -> bool {
+        self.history.depth().1 > 0
+    }
+
+    /// Whether there is a camera to go back to.
+    pub fn can_go_back(&self) -> bool {
+        self.views.depth().0 > 0
+    }
+
+    /// Whether there is a camera to go forth to.
+    pub fn can_go_forth(&self) -> bool {
+        self.views.depth().1 > 0
+    }
+
+    /// Goes so many steps back (below 0) or forth, as far as there are any.
+    fn travel(&mut self, steps: isize) {
+        for _ in 0..steps.unsigned_abs() {
+            let now = self.state();
+            let step = if steps < 0 { self.history.undo(now) } else { self.history.redo(now) };
+            let Some((scope, state)) = step else { return };
+            let camera = self.preset.scene.camera.clone();
+            self.preset = state.preset;
+            self.quality = state.quality;
+            match scope {
+                Scope::Sky => self.preset.scene.camera = camera,
+                Scope::Camera => {}
+                Scope::Document => (self.path, self.saved) = (state.path, state.saved),
+            }
+        }
+    }
+
+    fn state(&self) -> State {
+        State {
+            preset: self.preset.clone(),
+            quality: self.quality.clone(),
+            path: self.path.clone(),
+            saved: self.saved.clone(),
+        }
+    }
+
+    fn change(&mut self, action: &Action) {
         let scene = &mut self.preset.scene;
         match action {
             Action::EditScene { scene: edited, .. } => {
@@ -135,7 +239,12 @@ impl Document {
             Action::SetTimeFactor(factor) => {
                 self.time_factor = factor.clamp(*TIME_FACTOR_RANGE.start(), *TIME_FACTOR_RANGE.end());
             }
-            Action::Ask(_) => {}
+            Action::Undo
+            | Action::Redo
+            | Action::TravelHistory(_)
+            | Action::ViewBack
+            | Action::ViewForth
+            | Action::Ask(_) => {}
         }
     }
 
@@ -177,6 +286,73 @@ mod tests {
         assert!(document.is_modified() && document.title().ends_with('*'), "{}", document.title());
         document.apply(&Action::EditScene { key: "weather.coverage".to_owned(), scene: Box::new(before) });
         assert!(!document.is_modified(), "back to what is saved");
+    }
+
+    fn edit(document: &mut Document, coverage: f32) {
+        let mut scene = document.preset().scene.clone();
+        scene.weather.coverage = coverage;
+        document.apply(&Action::EditScene { key: "weather.coverage".to_owned(), scene: Box::new(scene) });
+    }
+
+    fn coverage(document: &Document) -> f32 {
+        document.preset().scene.weather.coverage
+    }
+
+    #[test]
+    fn one_drag_is_one_step_and_flights_have_their_own() {
+        let mut document = document();
+        let begun = coverage(&document);
+        for coverages in [[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]] {
+            document.hold(true);
+            for value in coverages {
+                edit(&mut document, value);
+            }
+            document.hold(false);
+        }
+        let far = Camera { east_m: 777.0, ..document.preset().scene.camera.clone() };
+        document.apply(&Action::MoveCamera(far.clone()));
+        assert_eq!(document.steps(), (vec!["edit weather.coverage"; 2], vec![]));
+        document.apply(&Action::Undo);
+        assert_eq!(coverage(&document), 0.3, "the second drag");
+        assert_eq!(document.preset().scene.camera, far, "the camera stays");
+        document.apply(&Action::Undo);
+        assert_eq!(coverage(&document), begun, "the first");
+        document.apply(&Action::Undo);
+        assert_eq!(coverage(&document), begun, "nothing before it");
+        document.apply(&Action::TravelHistory(2));
+        assert_eq!((coverage(&document), document.steps().1.len()), (0.6, 0), "both again");
+        document.apply(&Action::ViewBack);
+        assert_eq!(document.preset().scene.camera.east_m, 0.0, "back from the flight");
+        document.apply(&Action::ViewForth);
+        assert_eq!(document.preset().scene.camera, far, "and there again");
+        document.apply(&Action::Undo);
+        edit(&mut document, 0.9);
+        document.apply(&Action::Redo);
+        assert_eq!(coverage(&document), 0.9, "what was undone is forgotten after another edit");
+    }
+
+    #[test]
+    fn another_document_can_be_undone_with_its_file() {
+        let mut document = document();
+        edit(&mut document, 0.25);
+        let other = Document::from_file(Preset::new("Other", crate::scene::Scene::default()), Quality::default(), "o.ron".into());
+        document.replace_by(other, "open Other");
+        assert_eq!((document.name(), document.is_modified()), ("Other", false));
+        document.apply(&Action::Undo);
+        assert_eq!((coverage(&document), document.path(), document.is_modified()), (0.25, None, true));
+        document.apply(&Action::Redo);
+        assert_eq!((document.name(), document.path().is_some()), ("Other", true));
+    }
+
+    #[test]
+    fn saving_is_not_undone() {
+        let mut document = document();
+        edit(&mut document, 0.25);
+        document.mark_saved("here.ron".into());
+        document.apply(&Action::Undo);
+        assert!(document.is_modified(), "what is saved has the edit");
+        document.apply(&Action::Redo);
+        assert!(!document.is_modified(), "now it is as saved");
     }
 
     #[test]

@@ -8,6 +8,7 @@ pub mod camera_control;
 pub mod document;
 mod egui_glue;
 mod hands;
+mod history;
 pub mod lab;
 mod painter;
 mod recovery;

@@ -73,6 +73,7 @@ impl Session {
 
     /// Draws one frame of the panels, carries out what the user wants, and returns what only the window can do.
     pub fn frame(&mut self, ui: &mut egui::Ui, readout: &ui::Readout) -> Vec<Request> {
+        self.document.hold(ui.input(|input| input.pointer.any_down()));
         let actions = ui::show(ui, &mut self.ui, &self.document, readout);
         let requests = actions.into_iter().filter_map(|action| self.perform(action)).collect();
         if self.ui.dialog.is_none() {
@@ -113,8 +114,9 @@ impl Session {
             Request::Answer(answer) => self.answer(answer),
             Request::Recover(taken) => {
                 if let Some(preset) = self.recovered.take().filter(|_| taken) {
-                    self.document = Document::new(preset, self.document.quality().clone());
-                    self.document.mark_recovered();
+                    let mut recovered = Document::new(preset, self.document.quality().clone());
+                    recovered.mark_recovered();
+                    self.document.replace_by(recovered, "recover");
                 }
                 Some(Request::Recover(taken))
             }
@@ -146,7 +148,7 @@ impl Session {
         let quality = self.document.quality().clone();
         match request {
             Request::New => {
-                self.document = Document::new(Preset::new("", Scene::default()), quality);
+                self.document.replace_by(Document::new(Preset::new("", Scene::default()), quality), "new");
                 None
             }
             Request::Open(path) => {
@@ -234,7 +236,11 @@ impl Session {
     /// Opens a sky; the document stays as it is if that fails.
     pub fn open(&mut self, source: &Path) {
         match files::open(source) {
-            Ok(sky) => self.document = document_of(sky, self.document.quality().clone()),
+            Ok(sky) => {
+                let opened = document_of(sky, self.document.quality().clone());
+                let step = format!("open {}", opened.name());
+                self.document.replace_by(opened, step);
+            }
             Err(error) => self.ui.toasts.error(error),
         }
     }

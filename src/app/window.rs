@@ -20,6 +20,7 @@ use super::surface::WindowSurface;
 use super::viewport::{Step, Viewport};
 use super::worker::{Event, Message, StillJob, Worker};
 use super::{Action, NoDisplay, Session};
+use crate::files::KeptPrograms;
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::scene::{Quality, UpdateFraction};
 use crate::ui::Readout;
@@ -81,6 +82,7 @@ struct Live {
     /// Gone only while the device is replaced: a window has one surface at a time.
     surface: Option<WindowSurface>,
     gpu: Gpu,
+    programs: Option<KeptPrograms>,
     egui: Egui,
     viewport: Viewport,
     hands: Hands,
@@ -108,6 +110,7 @@ impl Live {
             .with_visible(false);
         let window = Arc::new(event_loop.create_window(attributes).context("no window could be opened")?);
         let (surface, gpu) = WindowSurface::open(&window, adapter)?;
+        let programs = KeptPrograms::begin(&gpu);
         let egui = Egui::new((event_loop, proxy), &window, &gpu, surface.format());
         let viewport = Viewport::new(&gpu)?;
         window.set_visible(true);
@@ -116,6 +119,7 @@ impl Live {
             window,
             surface: Some(surface),
             gpu,
+            programs,
             egui,
             viewport,
             hands: Hands::default(),
@@ -217,7 +221,11 @@ impl ApplicationHandler<Event> for App {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.lab.leave();
-        self.live = None;
+        if let Some(mut live) = self.live.take()
+            && let Some(programs) = &mut live.programs
+        {
+            programs.keep(&live.gpu);
+        }
     }
 }
 
@@ -507,6 +515,7 @@ impl Live {
     fn rebuild(&mut self, adapter: &AdapterChoice) -> anyhow::Result<()> {
         self.surface = None;
         let (surface, gpu) = WindowSurface::open(&self.window, adapter)?;
+        self.programs = KeptPrograms::begin(&gpu);
         self.egui.rebuild(&gpu, surface.format());
         self.viewport = Viewport::new(&gpu)?;
         self.surface = Some(surface);

@@ -6,7 +6,9 @@ use anyhow::{Context as _, Result};
 
 use super::error::Usage;
 use crate::files::{Sky, load_quality};
+use crate::plan::{Effect, Forced};
 use crate::scene::edit;
+use crate::scene::nearest::did_you_mean;
 use crate::scene::param::Choice as _;
 use crate::scene::{Quality, QualityLevel, Scene};
 
@@ -51,6 +53,35 @@ pub(super) fn set_camera(scene: &mut Scene, text: &str) -> Result<()> {
     Ok(())
 }
 
+/// `NAME=on` and `NAME=off` of effects, as the overlay and docs/effects.md name them; spaces may be written as dashes.
+pub(super) fn forced(texts: &[String]) -> Result<Forced> {
+    let mut forced = Forced::default();
+    for text in texts {
+        let refused = |reason: String| Usage(format!("--force {text:?}: {reason}"));
+        let wanted = text.split_once('=').and_then(|(name, state)| match state.trim() {
+            "on" => Some((name, true)),
+            "off" => Some((name, false)),
+            _ => None,
+        });
+        let Some((name, is_on)) = wanted else {
+            return Err(refused("write the name of an effect and =on or =off, such as sunshafts=off".to_owned()).into());
+        };
+        let Some(effect) = Effect::ALL.iter().copied().find(|effect| is_name_of(*effect, name.trim())) else {
+            let hint = did_you_mean(name, Effect::ALL.iter().map(|effect| effect.info().name));
+            return Err(refused(format!("there is no such effect{hint}; docs/effects.md lists them")).into());
+        };
+        if !is_on && !effect.info().can_be_off {
+            return Err(refused("the picture cannot be made without it".to_owned()).into());
+        }
+        forced = forced.with(effect, Some(is_on));
+    }
+    Ok(forced)
+}
+
+fn is_name_of(effect: Effect, text: &str) -> bool {
+    text.replace('-', " ").eq_ignore_ascii_case(&effect.info().name.replace('-', " "))
+}
+
 /// The quality settings: a level by name or a file if given, else those of the sky, else the level for stills.
 pub(super) fn quality(given: Option<&str>, sky: &Sky) -> Result<Quality> {
     let Some(given) = given else {
@@ -77,6 +108,20 @@ mod tests {
         for wrong in ["", "64", "0x5", "5x", "-1x5", "99999x5", "64x36x2", "NaNx1"] {
             assert!(size(wrong).is_err(), "{wrong}");
         }
+    }
+
+    #[test]
+    fn effects_are_forced_by_name() {
+        let read = |text: &str| forced(&[text.to_owned()]);
+        let seen = read("Sunshafts=off").expect("an effect");
+        assert_eq!((seen.get(Effect::Sunshafts), seen.get(Effect::Curl)), (Some(false), None));
+        let seen = read("henyey-greenstein-phase=on").expect("spaces may be dashes");
+        assert_eq!(seen.get(Effect::HenyeyGreenstein), Some(true));
+        for wrong in ["", "sunshafts", "sunshafts=maybe", "sunshaft=on", "weather map=off"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+        let message = read("sunshaft=on").expect_err("a slip").to_string();
+        assert!(message.contains("sunshafts"), "{message}");
     }
 
     #[test]

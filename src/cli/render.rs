@@ -15,9 +15,10 @@ use super::interrupt::{self, Interrupted};
 use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
-use crate::files::{self, About, save_exr, save_png};
+use crate::files::{self, About, KeptPrograms, save_exr, save_png};
 use crate::gpu::Gpu;
 use crate::images::pattern::{FramePattern, parse_frame_range};
+use crate::plan::Forced;
 use crate::render::Renderer;
 use crate::render::truth::Goal;
 use crate::scene::edit;
@@ -69,6 +70,10 @@ pub(super) struct RenderArgs {
     /// first that is not finite.
     #[arg(long)]
     watch: bool,
+    /// Run an effect that the sky does not call for, or leave one out: NAME=on or NAME=off, with a name of docs/effects.md.
+    /// May be given more than once.
+    #[arg(long, value_name = "EFFECT")]
+    force: Vec<String>,
     /// Print one line of JSON for each file.
     #[arg(long)]
     json: bool,
@@ -127,6 +132,7 @@ impl RenderArgs {
             depth: None,
             compression: CompressionArg::Zip,
             watch: false,
+            force: Vec::new(),
             json: false,
             edits,
             device,
@@ -162,6 +168,7 @@ struct Job {
     format: Format,
     output: Output,
     goal: Option<Goal>,
+    forced: Forced,
     /// File and time of each picture.
     pictures: Vec<(PathBuf, f64)>,
 }
@@ -199,7 +206,8 @@ impl Job {
         };
         let is_final = args.quality.as_deref().is_some_and(|quality| quality.eq_ignore_ascii_case("final"));
         let goal = args.integration.goal(is_final)?;
-        Ok(Self { preset, quality, format, output, goal, pictures: pictures(args)? })
+        let forced = args::forced(&args.force)?;
+        Ok(Self { preset, quality, format, output, goal, forced, pictures: pictures(args)? })
     }
 }
 
@@ -261,12 +269,17 @@ fn check_target(path: &Path) -> Result<(), ExportError> {
 pub(super) fn run(args: &RenderArgs) -> Result<()> {
     let job = Job::new(args)?;
     let gpu = Gpu::headless(&args.device.choice())?;
+    let mut programs = KeptPrograms::begin(&gpu);
     let mut renderer = Renderer::new(&gpu)?;
+    renderer.force(job.forced);
     let bar = progress(job.pictures.len());
     for (path, time_secs) in &job.pictures {
         bar.set_message(path.display().to_string());
         let begun = Instant::now();
         write_picture(&mut renderer, &job, args, (path, *time_secs))?;
+        if let Some(programs) = &mut programs {
+            programs.keep(&gpu);
+        }
         let seconds = begun.elapsed().as_secs_f64();
         bar.suspend(|| report(args, path, *time_secs, seconds))?;
         bar.inc(1);

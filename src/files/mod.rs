@@ -6,6 +6,7 @@
 mod grid;
 mod open;
 mod picture;
+mod programs;
 
 use std::fs::File;
 use std::io::Read as _;
@@ -14,6 +15,7 @@ use std::path::{Path, PathBuf};
 pub use grid::{VoxelFormat, save_grid};
 pub use open::{Origin, Sky, open};
 pub use picture::{About, save_exr, save_png};
+pub use programs::KeptPrograms;
 
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
@@ -99,6 +101,12 @@ fn write_text(path: &Path, text: &str) -> Result<(), FileError> {
 fn folder_of(path: &Path) -> PathBuf {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned())
+}
+
+/// Where files lie that can be made again.
+fn cache_folder() -> PathBuf {
+    directories::ProjectDirs::from("", "", "nephoscope")
+        .map_or_else(|| std::env::temp_dir().join("nephoscope"), |dirs| dirs.cache_dir().to_owned())
 }
 
 impl Preset {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{FileError, folder_of, grid};
+use super::{FileError, cache_folder, folder_of, grid};
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
 use crate::export::exr::EmbeddedFile;
@@ -96,9 +96,7 @@ fn map_of_picture(path: &Path, name: &str, files: &[EmbeddedFile]) -> Result<Pat
 
 /// Writes an embedded map into the cache, in a folder named by its contents.
 fn unpack(file: &EmbeddedFile, bytes: &[u8]) -> Result<PathBuf, FileError> {
-    let cache = directories::ProjectDirs::from("", "", "nephoscope")
-        .map_or_else(|| std::env::temp_dir().join("nephoscope"), |dirs| dirs.cache_dir().to_owned());
-    let folder = cache.join("maps").join(&sha256_hex(bytes)[..16]);
+    let folder = cache_folder().join("maps").join(&sha256_hex(bytes)[..16]);
     let target = folder.join(Path::new(&file.name).file_name().unwrap_or("map".as_ref()));
     if std::fs::read(&target).is_ok_and(|found| found == bytes) {
         return Ok(target);

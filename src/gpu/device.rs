@@ -1,8 +1,8 @@
 //! Opens a device: for a window, without one, or the software driver that tests rely on.
 
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 
-use super::GpuError;
+use super::{GpuError, unchecked};
 
 /// Which adapter to open.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -53,6 +53,8 @@ pub struct Gpu {
     uncaught: Arc<Mutex<Option<String>>>,
     /// Why the device is lost, if it is: for good.
     lost: Arc<Mutex<Option<String>>>,
+    /// Programs that the driver has compiled, where it can give them away.
+    pipelines: Arc<OnceLock<wgpu::PipelineCache>>,
 }
 
 impl Gpu {
@@ -97,7 +99,7 @@ impl Gpu {
     ) -> Result<Self, GpuError> {
         let adapter = Self::choose(&instance, choice, surface).await?;
         let info = adapter.get_info();
-        let optional = wgpu::Features::TIMESTAMP_QUERY;
+        let optional = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE;
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("nephoscope"),
             required_features: adapter.features() & optional,
@@ -125,7 +127,7 @@ impl Gpu {
                 }
             }
         });
-        Ok(Self { instance, adapter, device, queue, info, uncaught, lost })
+        Ok(Self { instance, adapter, device, queue, info, uncaught, lost, pipelines: Arc::default() })
     }
 
     /// WebGPU's defaults; images may be as large as the adapter allows.
@@ -180,6 +182,28 @@ impl Gpu {
         let driver = [self.info.driver.as_str(), self.info.driver_info.as_str()];
         let driver: Vec<&str> = driver.into_iter().filter(|part| !part.is_empty()).collect();
         format!("{} ({}; {:?})", self.info.name, driver.join(" "), self.info.backend)
+    }
+
+    /// Begins a cache of compiled programs, with the data of an earlier one of the same adapter and driver, if there is any;
+    /// false where the driver has none. To be called once, before programs are compiled.
+    pub fn begin_pipeline_cache(&self, data: Option<&[u8]>) -> bool {
+        if !self.device.features().contains(wgpu::Features::PIPELINE_CACHE) {
+            return false;
+        }
+        self.pipelines.set(unchecked::pipeline_cache(&self.device, data)).is_ok()
+    }
+
+    /// The cache that programs are compiled with.
+    pub(super) fn pipeline_cache(&self) -> Option<&wgpu::PipelineCache> {
+        self.pipelines.get()
+    }
+
+    /// What the driver gives away of the programs compiled so far; only it can read that.
+    pub fn pipeline_data(&self) -> Option<Vec<u8>> {
+        if self.is_lost() {
+            return None;
+        }
+        self.pipelines.get()?.get_data()
     }
 
     /// The error of a device that is lost; every thread that holds it sees it.

@@ -133,7 +133,7 @@ impl Program {
                         constants: &constants,
                         zero_initialize_workgroup_memory: false,
                     },
-                    cache: None,
+                    cache: gpu.pipeline_cache(),
                 })
             })
             .map_err(|message| GpuError::Pipeline { program: label.clone(), message })?;

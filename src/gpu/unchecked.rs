@@ -1,4 +1,4 @@
-//! The one place that turns off a check which naga adds to shaders.
+//! The one place with unsafe code: turning off a check which naga adds to shaders, and handing a driver its own data back.
 //!
 //! naga adds a counter to every loop, so that even an endless one ends. It keeps drivers from unrolling loops, and with
 //! that from seeing that indices are constant. The loops of this program's shaders all end by a count of their own, so
@@ -41,4 +41,13 @@ pub(super) fn shader_module(device: &wgpu::Device, descriptor: wgpu::ShaderModul
     // SAFETY: without loop bounding a shader must not loop for ever. All loops of the embedded shaders run to a counted
     // end; only somebody who edits them on disk (NEPHOSCOPE_SHADERS) can write one that does not.
     unsafe { device.create_shader_module_trusted(descriptor, checks) }
+}
+
+/// A cache of compiled programs, begun with what an earlier one of the same driver gave away.
+#[allow(unsafe_code, reason = "wgpu marks it unsafe, as drivers trust their own data")]
+pub(super) fn pipeline_cache(device: &wgpu::Device, data: Option<&[u8]>) -> wgpu::PipelineCache {
+    let descriptor = wgpu::PipelineCacheDescriptor { label: Some("programs"), data, fallback: true };
+    // SAFETY: data has to come from `PipelineCache::get_data`. Whoever reads it from a file checks a sum over it and over the
+    // driver's name and version (files/programs.rs); wgpu checks the device's and the driver's identity again.
+    unsafe { device.create_pipeline_cache(&descriptor) }
 }

@@ -36,7 +36,32 @@ impl Renderer {
     ) -> Result<(Vec<Job>, usize), RenderError> {
         let mut jobs = self.schedule_bakes(frame, &plan, slice_ms)?;
         let bake_jobs = jobs.len();
+        match self.schedule_passes(frame, plan, slice_ms, counters) {
+            Ok(passes) => {
+                jobs.extend(passes);
+                Ok((jobs, bake_jobs))
+            }
+            Err(error) => {
+                self.keep_bakes(jobs);
+                Err(error)
+            }
+        }
+    }
 
+    /// What was scheduled counts as made: jobs of a frame that comes to nothing are sent before those of the next.
+    fn keep_bakes(&mut self, jobs: Vec<Job>) {
+        self.bake_jobs += jobs.len();
+        self.queue.extend(jobs);
+    }
+
+    /// The passes of a frame, whose bakes are scheduled.
+    fn schedule_passes(
+        &mut self,
+        frame: &Frame<'_>,
+        plan: FramePlan,
+        slice_ms: Option<f64>,
+        counters: Option<&wgpu::Buffer>,
+    ) -> Result<Vec<Job>, RenderError> {
         let lighting = Lighting::new(frame.scene);
         let eye = Eye::new(&frame.scene.camera);
         let size = frame.render_size();
@@ -65,13 +90,13 @@ impl Renderer {
         passes.sunshafts(cloud)?;
         passes.finish(cloud, display, 0)?;
 
-        jobs.append(&mut passes.jobs);
+        let jobs = std::mem::take(&mut passes.jobs);
         let history = plan.temporal.map(|_| History { key, eye, time_secs: frame.time_secs, phase, side });
         let display = display.clone();
         self.targets = Some(targets);
         self.pending = Some(Pending { plan, history, display, started: Instant::now(), times: Vec::new() });
         self.candela_per_unit = lighting.candela_per_unit;
-        Ok((jobs, bake_jobs))
+        Ok(jobs)
     }
 
     /// The jobs that make the sky tables, noises, relief and weather map a frame needs and has not got.
@@ -81,10 +106,25 @@ impl Renderer {
         plan: &FramePlan,
         slice_ms: Option<f64>,
     ) -> Result<Vec<Job>, RenderError> {
+        let mut jobs = Vec::new();
+        match self.schedule_bakes_into(frame, plan, slice_ms, &mut jobs) {
+            Ok(()) => Ok(jobs),
+            Err(error) => {
+                self.keep_bakes(jobs);
+                Err(error)
+            }
+        }
+    }
+
+    fn schedule_bakes_into(
+        &mut self,
+        frame: &Frame<'_>,
+        plan: &FramePlan,
+        slice_ms: Option<f64>,
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), RenderError> {
         let scene = frame.scene;
         let context = Context { gpu: &self.gpu, programs: &self.programs, pace: &self.pace, slice_ms };
-        let mut jobs = Vec::new();
-        // What can be refused comes first: the rest counts as made once it is scheduled.
         self.voxels.read(&self.gpu, scene, plan)?;
         match plan.sky {
             Some(parts) => {
@@ -93,19 +133,19 @@ impl Renderer {
                     Some(sky) => sky,
                     none => none.insert(SkyTables::new(&self.gpu)?),
                 };
-                sky.update(&self.gpu, &self.programs, &inputs, &mut jobs)?;
+                sky.update(&self.gpu, &self.programs, &inputs, jobs)?;
             }
             None => self.sky = None,
         }
-        self.bakes.update(&context, plan, scene.ground.seed, &mut jobs)?;
+        self.bakes.update(&context, plan, scene.ground.seed, jobs)?;
         match plan.march.filter(|march| !march.mapless) {
             Some(march) => {
-                self.weather.update(&context, &scene.weather, frame.time_secs, &mut jobs)?;
+                self.weather.update(&context, &scene.weather, frame.time_secs, jobs)?;
                 let tracks = plan.tracks && march.baked.is_none();
-                self.weather.update_bounds(&context, tracks, &mut jobs)?;
+                self.weather.update_bounds(&context, tracks, jobs)?;
                 // Shadows alone need no clear ways; a view that turns back does.
                 if march.skip || plan.has_clouds() {
-                    self.clearance.update(&context, (frame, march), &self.weather, &mut jobs)?;
+                    self.clearance.update(&context, (frame, march), &self.weather, jobs)?;
                 }
             }
             None if plan.march.is_none() && plan.holds_clouds => {}
@@ -116,8 +156,8 @@ impl Renderer {
         }
         let mut read_by_bake = self.bakes.resources();
         read_by_bake.extend(self.weather.resources());
-        self.voxels.update(&context, (frame, plan), (&read_by_bake, self.weather.count()), &mut jobs)?;
-        Ok(jobs)
+        self.voxels.update(&context, (frame, plan), (&read_by_bake, self.weather.count()), jobs)?;
+        Ok(())
     }
 
     /// Bakes, sky tables and weather map by the names that shaders give them.

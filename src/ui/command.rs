@@ -23,6 +23,16 @@ pub enum Command {
     Export,
     /// Close the program.
     Quit,
+    /// Last step back.
+    Undo,
+    /// It again.
+    Redo,
+    /// List of steps on or off.
+    History,
+    /// Camera before the last flight.
+    ViewBack,
+    /// Camera after it.
+    ViewForth,
     /// Play or pause.
     PlayPause,
     /// Time back to 0.
@@ -60,7 +70,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 23] = [
+const TABLE: [(Command, Modifiers, Key, &str); 28] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -69,6 +79,11 @@ const TABLE: [(Command, Modifiers, Key, &str); 23] = [
     (Command::Screenshot, Modifiers::NONE, Key::F12, "Screenshot"),
     (Command::Export, Modifiers::COMMAND, Key::E, "Export still…"),
     (Command::Quit, Modifiers::COMMAND, Key::Q, "Quit"),
+    (Command::Redo, CTRL_SHIFT, Key::Z, "Redo"),
+    (Command::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
+    (Command::History, Modifiers::NONE, Key::F8, "History"),
+    (Command::ViewBack, Modifiers::ALT, Key::ArrowLeft, "Camera back"),
+    (Command::ViewForth, Modifiers::ALT, Key::ArrowRight, "Camera forth"),
     (Command::PlayPause, Modifiers::NONE, Key::Space, "Play or pause"),
     (Command::ResetTime, CTRL_SHIFT, Key::Home, "Time back to 0"),
     (Command::ResetCamera, Modifiers::NONE, Key::Home, "Camera back to the preset’s"),
@@ -137,6 +152,11 @@ impl Command {
             Self::Screenshot => ask(Request::Screenshot),
             Self::Export => state.dialog = Some(Dialog::Export(ExportForm::for_document(document))),
             Self::Quit => ask(Request::Quit),
+            Self::Undo => actions.push(Action::Undo),
+            Self::Redo => actions.push(Action::Redo),
+            Self::History => state.show_history = !state.show_history,
+            Self::ViewBack => actions.push(Action::ViewBack),
+            Self::ViewForth => actions.push(Action::ViewForth),
             Self::PlayPause => actions.push(Action::Play(!document.is_playing())),
             Self::ResetTime => actions.push(Action::ResetTime),
             Self::ResetCamera => actions.push(Action::ResetCamera),
@@ -168,6 +188,28 @@ impl Command {
         }
     }
 
+    /// Its name in a menu, with what it would do now.
+    pub(super) fn label(self, document: &Document) -> String {
+        let (past, future) = document.steps();
+        let step = match self {
+            Self::Undo => past.last(),
+            Self::Redo => future.first(),
+            _ => None,
+        };
+        step.map_or_else(|| self.title().to_owned(), |step| format!("{}: {step}", self.title()))
+    }
+
+    /// Whether there is anything for it to do.
+    pub(super) fn is_possible(self, document: &Document) -> bool {
+        match self {
+            Self::Undo => document.can_undo(),
+            Self::Redo => document.can_redo(),
+            Self::ViewBack => document.can_go_back(),
+            Self::ViewForth => document.can_go_forth(),
+            _ => true,
+        }
+    }
+
     /// Whether it is a switch that is on.
     pub(super) fn is_on(self, state: &State) -> bool {
         match self {
@@ -175,6 +217,7 @@ impl Command {
             Self::Lab => state.lab.is_open,
             Self::Compare => state.truth.compares(),
             Self::Keep => state.truth.is_kept,
+            Self::History => state.show_history,
             _ => false,
         }
     }

@@ -2,6 +2,7 @@
 
 mod command;
 mod dialogs;
+mod history;
 mod lab;
 mod overlay;
 mod panel;
@@ -44,6 +45,8 @@ pub struct State {
     pub show_presets: Option<bool>,
     /// Whether the timing overlay is there.
     pub show_overlay: bool,
+    /// Whether the list of steps is there.
+    pub show_history: bool,
     /// Whether everything but the picture is hidden.
     pub hide_all: bool,
     /// The question on the screen, if any.
@@ -71,6 +74,7 @@ impl Default for State {
             show_panel: true,
             show_presets: None,
             show_overlay: false,
+            show_history: false,
             hide_all: false,
             dialog: None,
             toasts: Toasts::default(),
@@ -152,6 +156,9 @@ pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Reado
     }
     if state.lab.is_open && !state.hide_all {
         lab::show(ui.ctx(), area, (&mut state.lab, document), &mut actions);
+    }
+    if state.show_history && !state.hide_all {
+        history::show(ui.ctx(), area, document, (&mut state.show_history, &mut actions));
     }
     dialogs::show(ui.ctx(), state, document, &mut actions);
     state.toasts.show(ui.ctx(), area);

@@ -37,7 +37,12 @@ fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<
             &[Command::Screenshot, Command::Export],
             &[Command::Quit],
         ];
-        entries(ui, state, &groups, &mut chosen);
+        entries(ui, (state, document), &groups, &mut chosen);
+    });
+    ui.menu_button("Edit", |ui| {
+        let groups =
+            [&[Command::Undo, Command::Redo, Command::History][..], &[Command::ViewBack, Command::ViewForth]];
+        entries(ui, (state, document), &groups, &mut chosen);
     });
     ui.menu_button("View", |ui| {
         let groups = [
@@ -46,18 +51,23 @@ fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<
             &[Command::ResetCamera, Command::Brighter, Command::Darker],
             &[Command::Refine, Command::Keep, Command::Compare],
         ];
-        entries(ui, state, &groups, &mut chosen);
+        entries(ui, (state, document), &groups, &mut chosen);
         super::truth::choose(ui, &mut state.truth);
         ui.separator();
         theme_and_scale(ui);
     });
-    ui.menu_button("Help", |ui| entries(ui, state, &[&[Command::Shortcuts]], &mut chosen));
+    ui.menu_button("Help", |ui| entries(ui, (state, document), &[&[Command::Shortcuts]], &mut chosen));
     if let Some(command) = chosen {
         command.run(ui, state, document, actions);
     }
 }
 
-fn entries(ui: &mut Ui, state: &State, groups: &[&[Command]], chosen: &mut Option<Command>) {
+fn entries(
+    ui: &mut Ui,
+    (state, document): (&State, &Document),
+    groups: &[&[Command]],
+    chosen: &mut Option<Command>,
+) {
     ui.set_min_width(230.0);
     for (index, group) in groups.iter().enumerate() {
         if index > 0 {
@@ -65,8 +75,8 @@ fn entries(ui: &mut Ui, state: &State, groups: &[&[Command]], chosen: &mut Optio
         }
         for command in *group {
             let keys = command.keys(ui.ctx());
-            let button = egui::Button::new(command.title()).shortcut_text(keys).selected(command.is_on(state));
-            if ui.add(button).clicked() {
+            let button = egui::Button::new(command.label(document)).shortcut_text(keys).selected(command.is_on(state));
+            if ui.add_enabled(command.is_possible(document), button).clicked() {
                 *chosen = Some(*command);
                 ui.close();
             }

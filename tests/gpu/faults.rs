@@ -1,8 +1,9 @@
 //! What is lost, and what is not, when the device fails.
 
+use nephoscope::files::KeptPrograms;
 use nephoscope::gpu::{Gpu, Texture, readback};
 use nephoscope::render::{LinearImage, Renderer};
-use nephoscope::scene::{Output, Scene};
+use nephoscope::scene::{MapSource, Output, Scene};
 
 use crate::common::field::run;
 use crate::common::gpu;
@@ -33,6 +34,26 @@ fn a_lost_device_is_an_error_and_another_one_shows_the_same_picture() {
 }
 
 #[test]
+fn kept_programs_draw_the_same_picture_whatever_is_in_their_file() {
+    let scene = Scene::default();
+    let expected = light(&mut renderer(), &scene).unwrap_or_else(|error| panic!("{error}"));
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for junk in [None, Some(&b""[..]), Some(&[0xA5; 5000][..])] {
+        let device = Gpu::software().expect("llvmpipe is installed");
+        let mut kept = KeptPrograms::begin_in(folder.path(), &device).expect("Vulkan has pipeline caches");
+        let mut fresh = Renderer::new(&device).unwrap_or_else(|error| panic!("{error}"));
+        let seen = light(&mut fresh, &scene).unwrap_or_else(|error| panic!("{error}"));
+        assert!(seen.rgba == expected.rgba, "the same picture");
+        let is_written = kept.keep(&device);
+        assert!(!is_written || kept.path().exists(), "a file of its own");
+        assert!(!kept.keep(&device), "nothing was compiled since");
+        if let Some(junk) = junk {
+            std::fs::write(kept.path(), junk).expect("the folder is ours");
+        }
+    }
+}
+
+#[test]
 fn a_picture_that_no_device_holds_is_refused_and_the_next_one_is_drawn() {
     let (scene, quality) = (Scene::default(), quick());
     let mut renderer = renderer();
@@ -40,6 +61,22 @@ fn a_picture_that_no_device_holds_is_refused_and_the_next_one_is_drawn() {
     let error = too_wide.expect_err("no device is that wide").to_string();
     assert!(error.contains("200000") && error.contains("at most"), "{error}");
     light(&mut renderer, &scene).unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn what_a_refused_picture_was_to_make_is_made_for_the_next() {
+    let scene = Scene::default();
+    let expected = light(&mut renderer(), &scene).unwrap_or_else(|error| panic!("{error}"));
+    let mut nowhere = Scene::default();
+    nowhere.weather.layers[0].source = MapSource::Image;
+    nowhere.weather.layers[0].image.0 = "/nowhere/map.png".to_owned();
+    for (refused, size) in [(&scene, [200_000, 4]), (&nowhere, [32, 18])] {
+        // It has no tables yet, which the refused picture needs first.
+        let mut fresh = Renderer::new(gpu()).unwrap_or_else(|error| panic!("{error}"));
+        fresh.render(&frame(refused, &quick(), size, Output::Linear)).expect_err("it is refused");
+        let seen = light(&mut fresh, &scene).unwrap_or_else(|error| panic!("{error}"));
+        assert!(seen.rgba == expected.rgba, "as if nothing had been refused");
+    }
 }
 
 #[test]
