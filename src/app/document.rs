@@ -335,7 +335,11 @@ mod tests {
     fn another_document_can_be_undone_with_its_file() {
         let mut document = document();
         edit(&mut document, 0.25);
-        let other = Document::from_file(Preset::new("Other", crate::scene::Scene::default()), Quality::default(), "o.ron".into());
+        let other = Document::from_file(
+            Preset::new("Other", crate::scene::Scene::default()),
+            Quality::default(),
+            "o.ron".into(),
+        );
         document.replace_by(other, "open Other");
         assert_eq!((document.name(), document.is_modified()), ("Other", false));
         document.apply(&Action::Undo);

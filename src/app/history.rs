@@ -61,9 +61,8 @@ impl History {
 
     /// Remembers a step by what the document was before it. What was undone is forgotten.
     pub(super) fn record(&mut self, name: String, scope: Scope, before: State) {
-        let goes_on = self.last.is_some_and(|(gesture, at)| {
-            gesture == self.gesture && (self.is_held || at.elapsed() < ONE_STEP)
-        });
+        let goes_on =
+            self.last.is_some_and(|(gesture, at)| gesture == self.gesture && (self.is_held || at.elapsed() < ONE_STEP));
         let is_same = self.past.last().is_some_and(|step| step.name == name) && scope != Scope::Document;
         if !(goes_on && is_same && self.future.is_empty()) {
             self.past.push(Step { name, scope, state: before });

@@ -40,8 +40,7 @@ fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<
         entries(ui, (state, document), &groups, &mut chosen);
     });
     ui.menu_button("Edit", |ui| {
-        let groups =
-            [&[Command::Undo, Command::Redo, Command::History][..], &[Command::ViewBack, Command::ViewForth]];
+        let groups = [&[Command::Undo, Command::Redo, Command::History][..], &[Command::ViewBack, Command::ViewForth]];
         entries(ui, (state, document), &groups, &mut chosen);
     });
     ui.menu_button("View", |ui| {
@@ -62,12 +61,7 @@ fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<
     }
 }
 
-fn entries(
-    ui: &mut Ui,
-    (state, document): (&State, &Document),
-    groups: &[&[Command]],
-    chosen: &mut Option<Command>,
-) {
+fn entries(ui: &mut Ui, (state, document): (&State, &Document), groups: &[&[Command]], chosen: &mut Option<Command>) {
     ui.set_min_width(230.0);
     for (index, group) in groups.iter().enumerate() {
         if index > 0 {
