@@ -83,6 +83,13 @@ pub enum Request {
     Export(Export),
     /// Take or refuse the document that a crash left behind.
     Recover(bool),
+    /// Put text from the clipboard into a parameter or section; without one it is a whole sky.
+    Paste {
+        /// The parameter's or section's key.
+        key: Option<String>,
+        /// The text.
+        text: String,
+    },
     /// Something about measuring.
     Lab(Lab),
     /// Full screen on or off.
@@ -215,6 +222,7 @@ impl Request {
             Self::Screenshot => "screenshot",
             Self::Export(_) => "export",
             Self::Recover(_) => "recover",
+            Self::Paste { .. } => "paste",
             Self::Lab(_) => "measure",
             Self::ToggleFullScreen => "full screen",
             Self::Quit => "quit",

@@ -6,7 +6,7 @@ use super::action::{Action, Answer, Browse, Request};
 use super::document::Document;
 use super::storage;
 use crate::files::{self, Origin, Sky};
-use crate::scene::{Preset, Quality, Scene};
+use crate::scene::{Preset, Quality, Scene, clip};
 use crate::ui::{self, Dialog, set_file_in};
 
 /// Where the program keeps what belongs to the user.
@@ -119,6 +119,12 @@ impl Session {
                     self.document.replace_by(recovered, "recover");
                 }
                 Some(Request::Recover(taken))
+            }
+            Request::Paste { key, text } => {
+                if let Err(error) = self.paste(key.as_deref(), &text) {
+                    self.ui.toasts.error(error);
+                }
+                None
             }
             Request::Browse(_)
             | Request::Screenshot
@@ -243,6 +249,27 @@ impl Session {
             }
             Err(error) => self.ui.toasts.error(error),
         }
+    }
+
+    /// Takes over text from the clipboard: values below a key, or a whole sky. On an error nothing has changed.
+    fn paste(&mut self, key: Option<&str>, text: &str) -> Result<(), String> {
+        let failed = |error: &dyn std::fmt::Display| format!("Nothing was pasted: {error}");
+        let Some(key) = key else {
+            let preset = Preset::from_ron(text, "the clipboard").map_err(|error| failed(&error))?;
+            let pasted = Document::new(preset, self.document.quality().clone());
+            self.document.replace_by(pasted, "paste a sky");
+            return Ok(());
+        };
+        let (mut scene, mut quality) = (self.document.preset().scene.clone(), self.document.quality().clone());
+        let action = if let Some(key) = key.strip_prefix("quality.") {
+            clip::paste(&mut quality, key, text).map_err(|error| failed(&error))?;
+            Action::EditQuality { key: key.to_owned(), quality: Box::new(quality) }
+        } else {
+            clip::paste(&mut scene, key, text).map_err(|error| failed(&error))?;
+            Action::EditScene { key: key.to_owned(), scene: Box::new(scene) }
+        };
+        self.document.apply(&action);
+        Ok(())
     }
 
     /// Takes over what the system's file dialog gave.

@@ -392,7 +392,12 @@ impl App {
                 let full = live.window.fullscreen().is_none().then_some(Fullscreen::Borderless(None));
                 live.window.set_fullscreen(full);
             }
-            Request::New | Request::Open(_) | Request::Save | Request::SaveAs(_) | Request::Answer(_) => {}
+            Request::New
+            | Request::Open(_)
+            | Request::Save
+            | Request::SaveAs(_)
+            | Request::Answer(_)
+            | Request::Paste { .. } => {}
         }
     }
 

@@ -6,7 +6,9 @@
 
 pub mod bounds;
 pub mod builtin;
+pub mod clip;
 pub mod edit;
+pub mod expression;
 mod frame;
 mod layer;
 mod light;

@@ -7,6 +7,78 @@ pub fn randomise(root: &mut impl Params, seed: u32) {
     root.visit(&mut Random { stream: Stream::new(seed.into()) });
 }
 
+/// Moves the parameters of `root` by up to so much of themselves, 0 to 1, and draws seeds anew; choices, switches and files
+/// stay, and so do parameters and groups whose key is `kept`. The same seed gives the same values.
+pub fn vary(root: &mut impl Params, seed: u32, amount: f32, kept: &dyn Fn(&str) -> bool) {
+    let stream = Stream::new(u64::from(seed) ^ 0x6e65_7068_6f73);
+    root.visit(&mut Vary { stream, amount: f64::from(amount.clamp(0.0, 1.0)), kept, prefix: String::new() });
+}
+
+/// Moves values near where they are: those of logarithmic parameters by a factor of up to four, others by up to half of
+/// themselves and no less than a twentieth of their range.
+struct Vary<'k> {
+    stream: Stream,
+    amount: f64,
+    kept: &'k dyn Fn(&str) -> bool,
+    prefix: String,
+}
+
+impl Vary<'_> {
+    fn key(&self, name: &str) -> String {
+        format!("{}{name}", self.prefix)
+    }
+
+    fn below(&mut self, name: &str, visit: &mut dyn FnMut(&mut dyn Visitor)) {
+        let key = self.key(name);
+        if (self.kept)(&key) {
+            return;
+        }
+        let outer = std::mem::replace(&mut self.prefix, format!("{key}."));
+        visit(self);
+        self.prefix = outer;
+    }
+}
+
+impl Visitor for Vary<'_> {
+    fn float(&mut self, info: &Info<f32>, value: &mut f32) {
+        // Drawn even where it is not used, so that keeping one parameter does not change the others.
+        let drawn = (2.0 * self.stream.unit() - 1.0) * self.amount;
+        let Some(range) = info.range.as_ref().filter(|_| !(self.kept)(&self.key(info.name))) else { return };
+        let (low, high, now) = (f64::from(*range.start()), f64::from(*range.end()), f64::from(*value));
+        let moved = if info.logarithmic {
+            now * 4.0_f64.powf(drawn)
+        } else {
+            now + drawn * (0.5 * now.abs()).max(0.05 * (high - low)).min(0.25 * (high - low))
+        };
+        *value = narrow(moved).clamp(*range.start(), *range.end());
+    }
+
+    fn count(&mut self, info: &Info<u32>, value: &mut u32) {
+        let drawn = self.stream.below(1 << 20);
+        let is_seed = info.name.ends_with("seed") && self.amount > 0.0;
+        let Some(range) = info.range.as_ref().filter(|_| is_seed && !(self.kept)(&self.key(info.name))) else { return };
+        *value = u32::try_from(drawn).unwrap_or(0).clamp(*range.start(), *range.end());
+    }
+
+    fn switch(&mut self, _: &Info<bool>, _: &mut bool) {}
+
+    fn choice(&mut self, _: &ChoiceInfo, _: &mut usize) {}
+
+    fn colour(&mut self, _: &Info<Colour>, _: &mut Colour) {}
+
+    fn file(&mut self, _: &Info<FileName>, _: &mut FileName) {}
+
+    fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {
+        self.below(info.name, children);
+    }
+
+    fn list(&mut self, info: &GroupInfo, list: &mut dyn List) {
+        for index in 0..list.count() {
+            self.below(&format!("{}.{index}", info.name), &mut |visitor| list.visit_item(index, visitor));
+        }
+    }
+}
+
 /// A sequence of numbers, the same for the same seed (`SplitMix64`; Steele, Lea and Flood 2014).
 #[derive(Clone, Debug)]
 pub struct Stream {
@@ -106,6 +178,27 @@ impl Visitor for Random {
 mod tests {
     use super::super::{Scene, edit::faults};
     use super::*;
+
+    #[test]
+    fn varied_skies_stay_near_and_keep_what_is_locked() {
+        let begun = Scene::default();
+        let varied = |seed, amount: f32| {
+            let mut scene = begun.clone();
+            vary(&mut scene, seed, amount, &|key| key == "camera" || key == "weather.coverage");
+            scene
+        };
+        assert_eq!(varied(1, 0.0), begun, "by nothing");
+        for seed in 0..20 {
+            let scene = varied(seed, 1.0);
+            assert_eq!((&scene.camera, scene.weather.coverage), (&begun.camera, begun.weather.coverage), "locked");
+            assert_ne!(scene.sun, begun.sun, "not locked");
+            assert!(faults(&scene).is_empty(), "{:?}", faults(&scene));
+            let ratio = scene.layers[0].shape_size_m / begun.layers[0].shape_size_m;
+            assert!((0.25..=4.0).contains(&ratio), "{ratio}");
+        }
+        assert_eq!(varied(7, 0.3), varied(7, 0.3), "the same seed");
+        assert_ne!(varied(7, 0.3), varied(8, 0.3), "another seed");
+    }
 
     #[test]
     fn a_seed_gives_one_scene_in_range() {

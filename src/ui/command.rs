@@ -29,6 +29,10 @@ pub enum Command {
     Redo,
     /// List of steps on or off.
     History,
+    /// Random changes on or off.
+    Vary,
+    /// The preset to the clipboard.
+    CopySky,
     /// Camera before the last flight.
     ViewBack,
     /// Camera after it.
@@ -70,7 +74,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 28] = [
+const TABLE: [(Command, Modifiers, Key, &str); 30] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -82,6 +86,8 @@ const TABLE: [(Command, Modifiers, Key, &str); 28] = [
     (Command::Redo, CTRL_SHIFT, Key::Z, "Redo"),
     (Command::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
     (Command::History, Modifiers::NONE, Key::F8, "History"),
+    (Command::Vary, Modifiers::COMMAND, Key::R, "Vary the sky"),
+    (Command::CopySky, CTRL_SHIFT, Key::C, "Copy the sky as text"),
     (Command::ViewBack, Modifiers::ALT, Key::ArrowLeft, "Camera back"),
     (Command::ViewForth, Modifiers::ALT, Key::ArrowRight, "Camera forth"),
     (Command::PlayPause, Modifiers::NONE, Key::Space, "Play or pause"),
@@ -103,7 +109,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 28] = [
 ];
 
 /// What mice and held keys do, for the sheet.
-pub(super) const GESTURES: [(&str, &str); 10] = [
+pub(super) const GESTURES: [(&str, &str); 13] = [
     ("Right mouse held", "Look around"),
     ("… with W A S D", "Fly forwards, left, back, right"),
     ("… with Q E", "Fly down, up"),
@@ -113,6 +119,9 @@ pub(super) const GESTURES: [(&str, &str); 10] = [
     ("L and left mouse", "Move the sun"),
     ("T held", "Show the truth while pictures are compared by Flip"),
     ("Ctrl+F", "Filter parameters"),
+    ("Shift, Ctrl while dragging", "Finer; from one round number to the next"),
+    ("Ctrl+C, Ctrl+V on a name", "Copy, paste a parameter or a section"),
+    ("Backspace on a name", "Reset a parameter"),
     ("Ctrl and + − 0", "Size of the panels"),
 ];
 
@@ -155,6 +164,11 @@ impl Command {
             Self::Undo => actions.push(Action::Undo),
             Self::Redo => actions.push(Action::Redo),
             Self::History => state.show_history = !state.show_history,
+            Self::Vary => state.vary.is_open = !state.vary.is_open,
+            Self::CopySky => {
+                ui.ctx().copy_text(document.preset().to_ron());
+                state.toasts.info("The sky is in the clipboard; Ctrl+V over the picture opens one");
+            }
             Self::ViewBack => actions.push(Action::ViewBack),
             Self::ViewForth => actions.push(Action::ViewForth),
             Self::PlayPause => actions.push(Action::Play(!document.is_playing())),
@@ -218,6 +232,7 @@ impl Command {
             Self::Compare => state.truth.compares(),
             Self::Keep => state.truth.is_kept,
             Self::History => state.show_history,
+            Self::Vary => state.vary.is_open,
             _ => false,
         }
     }

@@ -1,5 +1,6 @@
 //! The editor's panels. They see the document, never change it, and return what the user wants as [`Action`]s.
 
+mod clipboard;
 mod command;
 mod dialogs;
 mod history;
@@ -12,6 +13,7 @@ mod row;
 mod toasts;
 mod top_bar;
 mod truth;
+mod vary;
 mod viewport;
 
 pub use command::Command;
@@ -23,6 +25,7 @@ pub use presets::{Entry, Library};
 pub use probe::set_file_in;
 pub use toasts::{Level, Toasts};
 pub use truth::{Comparison, Figures, Refined, Refinement, TruthState, TruthView};
+pub use vary::VaryState;
 pub use viewport::{Gesture, Picture, ViewportState};
 
 use egui::{Margin, Theme, Ui};
@@ -45,6 +48,8 @@ pub struct State {
     pub show_presets: Option<bool>,
     /// Whether the timing overlay is there.
     pub show_overlay: bool,
+    /// Random changes.
+    pub vary: VaryState,
     /// Whether the list of steps is there.
     pub show_history: bool,
     /// Whether everything but the picture is hidden.
@@ -74,6 +79,7 @@ impl Default for State {
             show_panel: true,
             show_presets: None,
             show_overlay: false,
+            vary: VaryState::default(),
             show_history: false,
             hide_all: false,
             dialog: None,
@@ -156,6 +162,9 @@ pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Reado
     }
     if state.lab.is_open && !state.hide_all {
         lab::show(ui.ctx(), area, (&mut state.lab, document), &mut actions);
+    }
+    if state.vary.is_open && !state.hide_all {
+        vary::show(ui.ctx(), area, (&mut state.vary, document), &mut actions);
     }
     if state.show_history && !state.hide_all {
         history::show(ui.ctx(), area, document, (&mut state.show_history, &mut actions));

@@ -3,8 +3,8 @@
 use egui::collapsing_header::CollapsingState;
 use egui::{RichText, Ui};
 
-use super::probe::{Probe, Reset, duplicate_last_from};
-use super::row;
+use super::probe::{Filter, Probe, Reset, duplicate_last_from};
+use super::{clipboard, row};
 use crate::app::action::{Action, Browse, Request};
 use crate::scene::param::{Choice, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor};
 use crate::scene::{MAX_LAYERS, Quality, QualityLevel, Scene};
@@ -17,17 +17,24 @@ const OPEN_AT_FIRST: [&str; 2] = ["weather", "sun"];
 pub struct PanelState {
     /// Text that a row's name, key or documentation must contain.
     pub filter: String,
+    /// Whether only what differs from its default is shown.
+    pub modified_only: bool,
+    /// Whether only the few parameters are shown that make most of a sky.
+    pub simple: bool,
+    /// What was copied here last.
+    copied: String,
 }
 
 /// Draws the panel for a copy of the scene and the quality, and returns what the user did to them.
 pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: &Quality) -> Vec<Action> {
     let mut actions = Vec::new();
     filter_row(ui, state);
-    let filter = state.filter.trim().to_lowercase();
+    let text = state.filter.trim().to_lowercase();
+    let filter = Filter { text: &text, modified: state.modified_only, simple: state.simple };
     egui::ScrollArea::vertical().id_salt("parameters").auto_shrink([false; 2]).show(ui, |ui| {
-        quality_section(ui, &filter, quality, &mut actions);
+        quality_section(ui, filter, quality, &mut actions);
         let mut scene = scene.clone();
-        let mut rows = Rows::new(ui, &filter, String::new());
+        let mut rows = Rows::new(ui, filter, String::new());
         scene.visit(&mut rows);
         let (edit, browse, shown) = (rows.edit, rows.browse, rows.shown);
         if let Some(key) = edit {
@@ -36,18 +43,24 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: 
         if let Some(key) = browse {
             actions.push(Action::Ask(Request::Browse(Browse::Parameter(key))));
         }
-        if !shown && !filter.is_empty() && !quality_matches(quality, &filter) {
+        if !shown && filter.hides() && !quality_matches(quality, filter) {
             ui.add_space(8.0);
-            ui.weak(format!("No parameter matches “{}”.", state.filter.trim()));
+            let which = match (state.modified_only, text.is_empty()) {
+                (true, true) => "No parameter differs from its default.".to_owned(),
+                (true, false) => format!("No modified parameter matches “{}”.", state.filter.trim()),
+                _ => format!("No parameter matches “{}”.", state.filter.trim()),
+            };
+            ui.weak(which);
         }
         ui.add_space(12.0);
     });
+    clipboard::take(ui, &mut state.copied, (scene, quality), &mut actions);
     actions
 }
 
 fn filter_row(ui: &mut Ui, state: &mut PanelState) {
     ui.horizontal(|ui| {
-        let width = ui.available_width() - 30.0;
+        let width = ui.available_width() - 112.0;
         let edit = egui::TextEdit::singleline(&mut state.filter).hint_text("Filter parameters").desired_width(width);
         let response =
             ui.add(edit).on_hover_text("Shows only parameters whose name, key or help contains this (Ctrl+F)");
@@ -60,19 +73,27 @@ fn filter_row(ui: &mut Ui, state: &mut PanelState) {
         if clear.clicked() {
             state.filter.clear();
         }
+        let modified = ui.selectable_label(state.modified_only, "≠");
+        let modified = modified.on_hover_text("Shows only what differs from its default");
+        row::name(ui, &modified, "Modified only", "filter.modified");
+        state.modified_only ^= modified.clicked();
+        let simple = ui.selectable_label(state.simple, "Simple");
+        let simple = simple.on_hover_text("Shows only the few parameters that make most of a sky");
+        row::name(ui, &simple, "Simple view", "filter.simple");
+        state.simple ^= simple.clicked();
     });
     ui.add_space(2.0);
 }
 
-fn quality_matches(quality: &Quality, filter: &str) -> bool {
+fn quality_matches(quality: &Quality, filter: Filter<'_>) -> bool {
     let mut probe = Probe::new(filter, "quality");
     quality.clone().visit(&mut probe);
     probe.matches > 0
 }
 
 /// Quality stands above the scene: level buttons, then its rows.
-fn quality_section(ui: &mut Ui, filter: &str, quality: &Quality, actions: &mut Vec<Action>) {
-    if !filter.is_empty() && !quality_matches(quality, filter) {
+fn quality_section(ui: &mut Ui, filter: Filter<'_>, quality: &Quality, actions: &mut Vec<Action>) {
+    if filter.hides() && !filter.simple && !quality_matches(quality, filter) {
         return;
     }
     let mut edited = quality.clone();
@@ -119,7 +140,7 @@ struct Heading<'t> {
 /// Draws a row per parameter.
 struct Rows<'u> {
     ui: &'u mut Ui,
-    filter: &'u str,
+    filter: Filter<'u>,
     /// Key of the group the next parameters belong to, with a dot at its end.
     prefix: String,
     /// Key of the parameter that was edited, if any was.
@@ -131,14 +152,14 @@ struct Rows<'u> {
 }
 
 impl<'u> Rows<'u> {
-    fn new(ui: &'u mut Ui, filter: &'u str, prefix: String) -> Self {
+    fn new(ui: &'u mut Ui, filter: Filter<'u>, prefix: String) -> Self {
         Self { ui, filter, prefix, edit: None, browse: None, shown: false }
     }
 
     /// Draws one row unless the filter hides it; `draw` returns whether the value changed.
-    fn row(&mut self, name: &str, doc: &str, draw: impl FnOnce(&mut Ui, &str) -> bool) {
+    fn row(&mut self, (name, doc): (&str, &str), modified: bool, draw: impl FnOnce(&mut Ui, &str) -> bool) {
         let key = format!("{}{name}", self.prefix);
-        if !super::probe::fits(self.filter, &key, doc) {
+        if !self.filter.fits(&key, doc, modified) {
             return;
         }
         self.shown = true;
@@ -159,7 +180,7 @@ impl<'u> Rows<'u> {
         let id = self.ui.make_persistent_id(("section", key));
         let open = OPEN_AT_FIRST.contains(&key) || key.ends_with(".0") && key.starts_with("weather");
         let mut state = CollapsingState::load_with_default_open(self.ui.ctx(), id, open);
-        let filtering = !self.filter.is_empty();
+        let filtering = self.filter.hides();
         if filtering && !state.is_open() {
             state.set_open(true);
         }
@@ -170,6 +191,12 @@ impl<'u> Rows<'u> {
             let response = ui.add(title).on_hover_text(format!("{}\n\nKey: {key}", heading.doc.trim()));
             row::name(ui, &response, &format!("{} section", heading.title), key);
             toggle = response.clicked();
+            let mut reset = false;
+            clipboard::menu(&response, key, heading.title, buttons.is_some_and(|(_, modified)| modified), &mut reset);
+            pressed = reset.then_some(HeaderButton::Reset);
+            if response.contains_pointer() {
+                clipboard::note_pointed(ui, key);
+            }
             let Some((buttons, modified)) = buttons else { return };
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 for button in buttons {
@@ -211,28 +238,34 @@ fn header_button(ui: &mut Ui, button: HeaderButton, title: &str, (key, modified)
 
 impl Visitor for Rows<'_> {
     fn float(&mut self, info: &Info<f32>, value: &mut f32) {
-        self.row(info.name, info.doc, |ui, key| row::float(ui, key, info, value));
+        let modified = *value != info.default;
+        self.row((info.name, info.doc), modified, |ui, key| row::float(ui, key, info, value));
     }
 
     fn count(&mut self, info: &Info<u32>, value: &mut u32) {
-        self.row(info.name, info.doc, |ui, key| row::count(ui, key, info, value));
+        let modified = *value != info.default;
+        self.row((info.name, info.doc), modified, |ui, key| row::count(ui, key, info, value));
     }
 
     fn switch(&mut self, info: &Info<bool>, value: &mut bool) {
-        self.row(info.name, info.doc, |ui, key| row::switch(ui, key, info, value));
+        let modified = *value != info.default;
+        self.row((info.name, info.doc), modified, |ui, key| row::switch(ui, key, info, value));
     }
 
     fn choice(&mut self, info: &ChoiceInfo, index: &mut usize) {
-        self.row(info.name, info.doc, |ui, key| row::choice(ui, key, info, index));
+        let modified = *index != info.default;
+        self.row((info.name, info.doc), modified, |ui, key| row::choice(ui, key, info, index));
     }
 
     fn colour(&mut self, info: &Info<Colour>, value: &mut Colour) {
-        self.row(info.name, info.doc, |ui, key| row::colour(ui, key, info, value));
+        let modified = *value != info.default;
+        self.row((info.name, info.doc), modified, |ui, key| row::colour(ui, key, info, value));
     }
 
     fn file(&mut self, info: &Info<FileName>, value: &mut FileName) {
         let mut browse = false;
-        self.row(info.name, info.doc, |ui, key| row::file(ui, key, (info, value), &mut browse));
+        let modified = *value != info.default;
+        self.row((info.name, info.doc), modified, |ui, key| row::file(ui, key, (info, value), &mut browse));
         if browse {
             self.browse = Some(format!("{}{}", self.prefix, info.name));
         }
@@ -242,8 +275,8 @@ impl Visitor for Rows<'_> {
         let key = format!("{}{}", self.prefix, info.name);
         let mut probe = Probe::new(self.filter, &key);
         children(&mut probe);
-        let filter = super::probe::for_children(self.filter, info.title);
-        if !filter.is_empty() && probe.matches == 0 {
+        let filter = self.filter.for_children(info.title);
+        if filter.hides() && probe.matches == 0 {
             return;
         }
         let mut edit = None;
@@ -272,8 +305,8 @@ impl Visitor for Rows<'_> {
             let title = format!("{} {}", info.title, index + 1);
             let mut probe = Probe::new(self.filter, &item_key);
             list.visit_item(index, &mut probe);
-            let filter = super::probe::for_children(self.filter, &title);
-            if !filter.is_empty() && probe.matches == 0 {
+            let filter = self.filter.for_children(&title);
+            if filter.hides() && probe.matches == 0 {
                 continue;
             }
             let heading = Heading { title: &title, doc: info.doc };
@@ -293,7 +326,7 @@ impl Visitor for Rows<'_> {
             self.browse = browse.or(self.browse.take());
             press = press.or(pressed.map(|button| (index, button)));
         }
-        if self.filter.is_empty() && list.count() < MAX_LAYERS {
+        if !self.filter.hides() && list.count() < MAX_LAYERS {
             let title = info.title.to_lowercase();
             let response = self.ui.button(format!("+ Add {title}")).on_hover_text(format!("Adds another {title}"));
             if response.clicked() {

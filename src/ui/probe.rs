@@ -3,24 +3,65 @@
 
 use crate::scene::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor, label};
 
-/// Whether a parameter passes a filter (already in lower case).
-pub(super) fn fits(filter: &str, key: &str, doc: &str) -> bool {
-    let name = key.rsplit('.').next().unwrap_or(key);
-    filter.is_empty()
-        || key.contains(filter)
-        || label(name).to_lowercase().contains(filter)
-        || doc.to_lowercase().contains(filter)
+/// Parameters of the simple view; the number of a list's item is left out.
+const SIMPLE: [&str; 14] = [
+    "layers.base_m",
+    "layers.top_m",
+    "layers.density",
+    "layers.detail_strength",
+    "weather.coverage",
+    "weather.size_m",
+    "wind.from_deg",
+    "wind.speed_mps",
+    "sun.elevation_deg",
+    "sun.azimuth_deg",
+    "sun.hour_h",
+    "air.haze",
+    "sunshafts.strength",
+    "display.exposure_ev",
+];
+
+/// Which parameters are shown.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Filter<'f> {
+    /// What name, key or help must contain, in lower case.
+    pub text: &'f str,
+    /// Only those that differ from their defaults.
+    pub modified: bool,
+    /// Only those of the simple view.
+    pub simple: bool,
 }
 
-/// The filter for the rows of a section: none if the section's own title matches, so that all of it shows.
-pub(super) fn for_children<'f>(filter: &'f str, title: &str) -> &'f str {
-    if title.to_lowercase().contains(filter) { "" } else { filter }
+impl Filter<'_> {
+    /// Whether anything may be hidden.
+    pub(super) fn hides(self) -> bool {
+        !self.text.is_empty() || self.modified || self.simple
+    }
+
+    /// Whether a parameter is shown.
+    pub(super) fn fits(self, key: &str, doc: &str, modified: bool) -> bool {
+        let name = key.rsplit('.').next().unwrap_or(key);
+        let is_simple = || {
+            let parts = key.split('.').filter(|part| part.parse::<usize>().is_err());
+            SIMPLE.contains(&parts.collect::<Vec<_>>().join(".").as_str())
+        };
+        let contains = self.text.is_empty()
+            || key.contains(self.text)
+            || label(name).to_lowercase().contains(self.text)
+            || doc.to_lowercase().contains(self.text);
+        contains && (modified || !self.modified) && (!self.simple || is_simple())
+    }
+
+    /// The filter for the rows of a section: its text does not count where the section's own title has it.
+    pub(super) fn for_children(self, title: &str) -> Self {
+        if title.to_lowercase().contains(self.text) { Self { text: "", ..self } } else { self }
+    }
 }
 
 /// Counts parameters that differ from their defaults, and those that pass a filter.
 #[derive(Debug)]
 pub(super) struct Probe<'f> {
-    filter: &'f str,
+    filter: Filter<'f>,
     prefix: String,
     /// Parameters that differ from their defaults.
     pub modified: usize,
@@ -30,13 +71,13 @@ pub(super) struct Probe<'f> {
 
 impl<'f> Probe<'f> {
     /// A probe for the group with this key.
-    pub(super) fn new(filter: &'f str, key: &str) -> Self {
+    pub(super) fn new(filter: Filter<'f>, key: &str) -> Self {
         Self { filter, prefix: key.to_owned(), modified: 0, matches: 0 }
     }
 
     fn see(&mut self, name: &str, doc: &str, modified: bool) {
         self.modified += usize::from(modified);
-        self.matches += usize::from(fits(self.filter, &format!("{}.{name}", self.prefix), doc));
+        self.matches += usize::from(self.filter.fits(&format!("{}.{name}", self.prefix), doc, modified));
     }
 }
 
@@ -66,7 +107,7 @@ impl Visitor for Probe<'_> {
     }
 
     fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {
-        let mut inner = Self::new(for_children(self.filter, info.title), &format!("{}.{}", self.prefix, info.name));
+        let mut inner = Self::new(self.filter.for_children(info.title), &format!("{}.{}", self.prefix, info.name));
         children(&mut inner);
         self.modified += inner.modified;
         self.matches += inner.matches;
@@ -271,7 +312,7 @@ mod tests {
     fn probes_count_and_reset_clears() {
         let mut scene = Scene::default();
         scene.layers[0].phase.g = 0.3;
-        let mut probe = Probe::new("anisotropy", "scene");
+        let mut probe = Probe::new(Filter { text: "anisotropy", ..Filter::default() }, "scene");
         scene.visit(&mut probe);
         // The default scene differs from the defaults of its groups nowhere.
         assert_eq!(probe.modified, 1, "only g differs");

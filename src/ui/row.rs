@@ -4,7 +4,9 @@ use std::ops::RangeInclusive;
 
 use egui::{Align, DragValue, Layout, Response, Slider, Ui, UiBuilder, Vec2};
 
-use crate::scene::param::{ChoiceInfo, Colour, FileName, Info, label};
+use super::clipboard;
+use crate::scene::expression::evaluate;
+use crate::scene::param::{ChoiceInfo, Colour, FileName, Info, Unit, label};
 
 /// Width of the number field, in points.
 const NUMBER_WIDTH: f32 = 84.0;
@@ -32,7 +34,12 @@ struct Help<'i> {
 impl Help<'_> {
     fn text(&self) -> String {
         let range = self.range.as_ref().map(|range| format!("Range {range} · ")).unwrap_or_default();
-        format!("{}\n\n{range}Default {}\nKey {}", self.doc.trim(), self.default, self.key)
+        format!(
+            "{}\n\n{range}Default {}\nKey {}\n\nBackspace resets, Ctrl+C and Ctrl+V copy and paste what the pointer is on",
+            self.doc.trim(),
+            self.default,
+            self.key
+        )
     }
 }
 
@@ -47,7 +54,7 @@ fn frame(
     let mut result = RowResult::default();
     let height = ui.spacing().interact_size.y;
     let width = ui.available_width();
-    let (rect, _) = ui.allocate_exact_size(Vec2::new(width, height), egui::Sense::hover());
+    let (rect, whole) = ui.allocate_exact_size(Vec2::new(width, height), egui::Sense::hover());
     let label_width = (width * 0.41).clamp(90.0, 200.0);
     let mut label_rect = rect;
     label_rect.set_width(label_width);
@@ -60,10 +67,17 @@ fn frame(
     let mut label_ui = ui.new_child(UiBuilder::new().max_rect(label_rect).layout(Layout::left_to_right(Align::Center)));
     let text = egui::RichText::new(title);
     let text = if modified { text.color(ui.visuals().strong_text_color()) } else { text };
-    label_ui.add(egui::Label::new(text).truncate().selectable(false)).on_hover_ui(|ui| {
+    let heading = label_ui.add(egui::Label::new(text).truncate().selectable(false).sense(egui::Sense::click()));
+    let heading = heading.on_hover_ui(|ui| {
         ui.set_max_width(340.0);
         ui.label(help.text());
     });
+    result.reset |= heading.double_clicked();
+    clipboard::menu(&heading, help.key, title, modified, &mut result.reset);
+    if whole.contains_pointer() {
+        clipboard::note_pointed(ui, help.key);
+        result.reset |= modified && clipboard::is_reset_pressed(ui);
+    }
     let layout = Layout::left_to_right(Align::Center);
     let mut control_ui = ui.new_child(UiBuilder::new().id_salt(help.key).max_rect(control_rect).layout(layout));
     result.changed = control(&mut control_ui);
@@ -71,7 +85,7 @@ fn frame(
     let reset = reset_ui.add_enabled(modified, egui::Button::new("↺").frame(false).min_size(Vec2::splat(RESET_WIDTH)));
     let reset = reset.on_hover_text(format!("Reset to {}", help.default));
     name(ui, &reset, &format!("Reset {title}"), &format!("{}.reset", help.key));
-    result.reset = reset.clicked();
+    result.reset |= reset.clicked();
     result
 }
 
@@ -104,22 +118,27 @@ pub(super) fn number(value: f64) -> String {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }
 
-/// Reads a typed number, with or without its unit; refuses what is not finite.
-pub(super) fn parse(text: &str) -> Option<f64> {
-    let text = text.trim().replace('−', "-").replace(',', ".");
-    let end = text.find(|letter: char| !(letter.is_ascii_digit() || "+-.eE".contains(letter))).unwrap_or(text.len());
-    let number = text.get(..end)?.trim_end_matches(['e', 'E']);
-    number.parse::<f64>().ok().filter(|value| value.is_finite())
-}
-
 /// Everything a number's control needs to know.
 struct Scale<'i> {
     title: &'i str,
     key: &'i str,
-    suffix: &'static str,
+    unit: Unit,
     range: RangeInclusive<f64>,
     logarithmic: bool,
     whole: bool,
+}
+
+impl Scale<'_> {
+    /// The nearest round number: with Ctrl held, controls go from one to the next.
+    fn snapped(&self, value: f64) -> f64 {
+        let (low, high) = (*self.range.start(), *self.range.end());
+        let near = if self.logarithmic { value.abs() } else { (high - low) / 4.0 };
+        if self.whole || near <= 0.0 || !near.is_finite() {
+            return value;
+        }
+        let step = 0.5 * 10.0_f64.powf(near.log10().floor());
+        ((value / step).round() * step).clamp(low, high)
+    }
 }
 
 /// Slider and field for one number.
@@ -139,6 +158,9 @@ fn number_control(ui: &mut Ui, scale: &Scale<'_>, value: &mut f64) -> bool {
         let response = ui.add(slider);
         name(ui, &response, scale.title, scale.key);
         changed |= response.changed();
+        if response.dragged() && ui.input(|input| input.modifiers.command) {
+            *value = scale.snapped(*value);
+        }
     }
     let speed = if scale.whole {
         ((high - low) / 400.0).clamp(0.02, 20.0)
@@ -147,17 +169,20 @@ fn number_control(ui: &mut Ui, scale: &Scale<'_>, value: &mut f64) -> bool {
     } else {
         (high - low) / 500.0
     };
-    let whole = scale.whole;
+    let (whole, unit) = (scale.whole, scale.unit);
     let field = DragValue::new(value)
         .range(scale.range.clone())
         .speed(speed)
-        .suffix(scale.suffix)
+        .suffix(unit.suffix())
         .update_while_editing(false)
         .custom_formatter(move |value, _| if whole { format!("{value:.0}") } else { number(value) })
-        .custom_parser(parse);
+        .custom_parser(move |text| evaluate(text, unit));
     let width = if with_slider { NUMBER_WIDTH } else { ui.available_width() };
     let response = ui.add_sized([width.min(ui.available_width()), ui.spacing().interact_size.y], field);
     name(ui, &response, &format!("{} value", scale.title), &format!("{}.value", scale.key));
+    if response.dragged() && ui.input(|input| input.modifiers.command) {
+        *value = scale.snapped(*value);
+    }
     changed | response.changed()
 }
 
@@ -171,7 +196,8 @@ pub(super) fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -
     let show = |value: f32| format!("{}{suffix}", number(f64::from(value)));
     let shown_range = info.range.as_ref().map(|range| format!("{} to {}", show(*range.start()), show(*range.end())));
     let help = Help { key, doc: info.doc, range: shown_range, default: show(info.default) };
-    let scale = Scale { title: &title, key, suffix, range: low..=high, logarithmic: info.logarithmic, whole: false };
+    let scale =
+        Scale { title: &title, key, unit: info.unit, range: low..=high, logarithmic: info.logarithmic, whole: false };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
         let mut wide = f64::from(*value);
         let changed = number_control(ui, &scale, &mut wide);
@@ -192,7 +218,7 @@ pub(super) fn count(ui: &mut Ui, key: &str, info: &Info<u32>, value: &mut u32) -
     let shown_range = info.range.as_ref().map(|range| format!("{} to {}{suffix}", range.start(), range.end()));
     let help = Help { key, doc: info.doc, range: shown_range, default: format!("{}{suffix}", info.default) };
     let wide = f64::from(*range.start())..=f64::from(*range.end());
-    let scale = Scale { title: &title, key, suffix, range: wide, logarithmic: info.logarithmic, whole: true };
+    let scale = Scale { title: &title, key, unit: info.unit, range: wide, logarithmic: info.logarithmic, whole: true };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
         let mut wide = f64::from(*value);
         let changed = number_control(ui, &scale, &mut wide);
@@ -264,7 +290,7 @@ pub(super) fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Co
                 .speed(0.005)
                 .update_while_editing(false)
                 .custom_formatter(|value, _| number((value * 1000.0).round() / 1000.0))
-                .custom_parser(parse);
+                .custom_parser(|text| evaluate(text, Unit::None));
             let response = ui.add_sized([width, ui.spacing().interact_size.y], field);
             name(ui, &response, &format!("{title}, {channel}"), &format!("{key}.{channel}"));
             changed |= response.changed();
@@ -316,12 +342,18 @@ mod tests {
     }
 
     #[test]
-    fn typed_numbers_may_carry_their_unit_but_must_be_finite() {
-        assert_eq!(parse("1200 m"), Some(1200.0));
-        assert_eq!(parse(" −3,5 EV"), Some(-3.5));
-        assert_eq!(parse("1e3"), Some(1000.0));
-        for bad in ["NaN", "inf", "", "abc", "1e999"] {
-            assert_eq!(parse(bad), None, "{bad}");
-        }
+    fn snapped_values_are_round() {
+        let scale = |range: RangeInclusive<f64>, logarithmic| Scale {
+            title: "",
+            key: "",
+            unit: Unit::None,
+            range,
+            logarithmic,
+            whole: false,
+        };
+        assert_eq!(scale(0.0..=1.0, false).snapped(0.437), 0.45);
+        assert_eq!(scale(0.0..=360.0, false).snapped(137.0), 135.0);
+        assert_eq!(scale(1.0..=1000.0, true).snapped(437.0), 450.0);
+        assert_eq!(scale(0.0..=1.0, true).snapped(0.0), 0.0);
     }
 }

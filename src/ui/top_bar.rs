@@ -5,6 +5,8 @@ use egui::{Align, Layout, Theme, Ui};
 use super::{Command, State, row};
 use crate::app::action::Action;
 use crate::app::document::{Document, TIME_FACTOR_RANGE};
+use crate::scene::expression::evaluate;
+use crate::scene::param::Unit;
 
 /// Draws the bar.
 pub(super) fn show(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
@@ -120,7 +122,7 @@ fn time(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
         .prefix("×")
         .update_while_editing(false)
         .custom_formatter(|value, _| row::number(value))
-        .custom_parser(|text| row::parse(text.trim_start_matches('×')));
+        .custom_parser(|text| evaluate(text.trim_start_matches('×'), Unit::None));
     let field = ui.add(field).on_hover_text("Speed of time: seconds of the scene per second of the clock");
     row::name(ui, &field, "Speed of time", "time.factor");
     if field.changed() {
