@@ -401,6 +401,42 @@ fn values_and_sections_are_copied_and_pasted_where_the_pointer_is() {
 }
 
 #[test]
+fn snapshots_restore_and_are_held_beside_the_picture() {
+    let mut editor = Editor::new();
+    editor.type_number("weather.coverage", "0.2");
+    let shot = |editor: &mut Editor, grey: u8| {
+        let context = editor.harness.ctx.clone();
+        let session = editor.harness.state_mut();
+        session.ui.viewport.picture = Some(picture(1));
+        let pixels = [grey, grey, grey, 255].repeat(16 * 9);
+        session.ui.snapshots.add(&context, &session.document, ([16, 9], pixels));
+        editor.harness.run();
+    };
+    editor.press(egui::Key::F7);
+    assert_eq!(editor.requests.borrow().last(), Some(&Request::Snapshot));
+    shot(&mut editor, 100);
+    editor.type_number("weather.coverage", "0.8");
+    shot(&mut editor, 110);
+    editor.click("snapshots.0");
+    editor.click("snapshots.Wipe");
+    assert!(editor.harness.query_by_label("Divider between snapshot and picture").is_some());
+    editor.click("snapshots.Difference");
+    assert!(editor.harness.state().ui.snapshots.wants_difference());
+    // A picture of another size than the snapshot's.
+    let context = editor.harness.ctx.clone();
+    editor.harness.state_mut().ui.snapshots.show_difference(&context, ([4, 3], &[103; 48]));
+    editor.harness.run();
+    editor.harness.state_mut().ui.snapshots.show_difference(&context, ([4, 3], &[]));
+    editor.with_key("snapshots.0").click_secondary();
+    editor.harness.run();
+    editor.click_label("Restore");
+    assert_eq!(editor.scene().weather.coverage, 0.2);
+    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    editor.harness.run();
+    assert_eq!(editor.scene().weather.coverage, 0.8, "restoring is undone");
+}
+
+#[test]
 fn the_panel_shows_what_is_modified_or_little() {
     let mut editor = Editor::new();
     editor.type_number("weather.coverage", "0.7");

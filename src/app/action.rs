@@ -6,7 +6,7 @@ use crate::lab::accuracy::Setting;
 use crate::lab::bench::Rounds;
 use crate::lab::suite::SuiteKind;
 use crate::render::truth::Goal;
-use crate::scene::{Camera, Quality, QualityLevel, Scene};
+use crate::scene::{Camera, Preset, Quality, QualityLevel, Scene};
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,15 @@ pub enum Action {
     ResetTime,
     /// Seconds of the scene per second of the clock.
     SetTimeFactor(f64),
+    /// The sky of a snapshot, its camera included.
+    Restore {
+        /// What the step is called.
+        name: String,
+        /// The sky.
+        preset: Box<Preset>,
+        /// How it was computed.
+        quality: Box<Quality>,
+    },
     /// Take the last step back.
     Undo,
     /// Take it again.
@@ -79,6 +88,8 @@ pub enum Request {
     Browse(Browse),
     /// Write what the window shows as PNG.
     Screenshot,
+    /// Keep the sky with the picture that the window shows.
+    Snapshot,
     /// Render a still and write it.
     Export(Export),
     /// Take or refuse the document that a crash left behind.
@@ -194,6 +205,7 @@ impl Action {
             Self::Play(false) => "pause".to_owned(),
             Self::ResetTime => "reset the time".to_owned(),
             Self::SetTimeFactor(_) => "set the speed of time".to_owned(),
+            Self::Restore { name, .. } => name.clone(),
             Self::Undo => "undo".to_owned(),
             Self::Redo => "redo".to_owned(),
             Self::TravelHistory(_) => "go through the history".to_owned(),
@@ -205,7 +217,11 @@ impl Action {
 
     /// Whether an edit is one of the camera.
     pub fn concerns_camera(&self) -> bool {
-        matches!(self, Self::EditScene { key, .. } if key.split('.').next() == Some("camera"))
+        match self {
+            Self::EditScene { key, .. } => key.split('.').next() == Some("camera"),
+            Self::Restore { .. } => true,
+            _ => false,
+        }
     }
 }
 
@@ -220,6 +236,7 @@ impl Request {
             Self::Answer(_) => "answer",
             Self::Browse(_) => "browse",
             Self::Screenshot => "screenshot",
+            Self::Snapshot => "snapshot",
             Self::Export(_) => "export",
             Self::Recover(_) => "recover",
             Self::Paste { .. } => "paste",

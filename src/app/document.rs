@@ -233,6 +233,10 @@ impl Document {
             Action::ChangeExposure(stops) => {
                 scene.display.exposure_ev = (scene.display.exposure_ev + stops).clamp(-12.0, 24.0);
             }
+            Action::Restore { preset, quality, .. } => {
+                self.preset = (**preset).clone();
+                self.quality = (**quality).clone();
+            }
             Action::Rename(name) => self.preset.name.clone_from(name),
             Action::Play(playing) => self.playing = *playing,
             Action::ResetTime => self.time_secs = 0.0,

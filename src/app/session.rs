@@ -128,6 +128,7 @@ impl Session {
             }
             Request::Browse(_)
             | Request::Screenshot
+            | Request::Snapshot
             | Request::Export(_)
             | Request::Lab(_)
             | Request::ToggleFullScreen => Some(request),

@@ -93,6 +93,8 @@ struct Live {
     /// When time and camera were moved last.
     ticked: Instant,
     occluded: bool,
+    /// Whether the picture is another than the one that was compared with a snapshot last.
+    is_new: bool,
     device_opened: Instant,
 }
 
@@ -128,6 +130,7 @@ impl Live {
             due: Some(now),
             ticked: now,
             occluded: false,
+            is_new: true,
             device_opened: now,
         })
     }
@@ -278,6 +281,7 @@ impl App {
                     if let Some(broken) = live.viewport.take_broken() {
                         self.session.ui.toasts.error(broken);
                     }
+                    live.is_new = true;
                     live.draw_within(Duration::ZERO);
                     wake = Some(now);
                 }
@@ -318,6 +322,7 @@ impl App {
         let begun = Instant::now();
         live.due = None;
         live.show_truth(&mut self.session);
+        live.show_difference(&mut self.session);
         let Some(surface) = &mut live.surface else { return };
         surface.follow_window(&live.gpu);
         let viewport = &mut self.session.ui.viewport;
@@ -369,6 +374,7 @@ impl App {
             }
             Request::Browse(purpose) => self.browse(purpose),
             Request::Screenshot => self.screenshot(),
+            Request::Snapshot => self.take_snapshot(),
             Request::Export(export) => {
                 let Some(live) = &self.live else { return };
                 let document = &self.session.document;

@@ -29,6 +29,8 @@ pub enum Command {
     Redo,
     /// List of steps on or off.
     History,
+    /// Keep the sky and its picture.
+    Snapshot,
     /// Random changes on or off.
     Vary,
     /// The preset to the clipboard.
@@ -74,7 +76,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 30] = [
+const TABLE: [(Command, Modifiers, Key, &str); 31] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -86,6 +88,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 30] = [
     (Command::Redo, CTRL_SHIFT, Key::Z, "Redo"),
     (Command::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
     (Command::History, Modifiers::NONE, Key::F8, "History"),
+    (Command::Snapshot, Modifiers::NONE, Key::F7, "Take a snapshot"),
     (Command::Vary, Modifiers::COMMAND, Key::R, "Vary the sky"),
     (Command::CopySky, CTRL_SHIFT, Key::C, "Copy the sky as text"),
     (Command::ViewBack, Modifiers::ALT, Key::ArrowLeft, "Camera back"),
@@ -109,7 +112,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 30] = [
 ];
 
 /// What mice and held keys do, for the sheet.
-pub(super) const GESTURES: [(&str, &str); 13] = [
+pub(super) const GESTURES: [(&str, &str); 14] = [
     ("Right mouse held", "Look around"),
     ("… with W A S D", "Fly forwards, left, back, right"),
     ("… with Q E", "Fly down, up"),
@@ -117,6 +120,7 @@ pub(super) const GESTURES: [(&str, &str); 13] = [
     ("… with Shift, Ctrl", "Five times faster, slower"),
     ("Middle mouse, Shift+left", "Orbit the point ahead"),
     ("L and left mouse", "Move the sun"),
+    ("B held", "Show the chosen snapshot"),
     ("T held", "Show the truth while pictures are compared by Flip"),
     ("Ctrl+F", "Filter parameters"),
     ("Shift, Ctrl while dragging", "Finer; from one round number to the next"),
@@ -164,6 +168,7 @@ impl Command {
             Self::Undo => actions.push(Action::Undo),
             Self::Redo => actions.push(Action::Redo),
             Self::History => state.show_history = !state.show_history,
+            Self::Snapshot => ask(Request::Snapshot),
             Self::Vary => state.vary.is_open = !state.vary.is_open,
             Self::CopySky => {
                 ui.ctx().copy_text(document.preset().to_ron());

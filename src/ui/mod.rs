@@ -10,6 +10,7 @@ mod panel;
 mod presets;
 mod probe;
 mod row;
+mod snapshots;
 mod toasts;
 mod top_bar;
 mod truth;
@@ -23,6 +24,7 @@ pub use overlay::{PassLine, Readout};
 pub use panel::PanelState;
 pub use presets::{Entry, Library};
 pub use probe::set_file_in;
+pub use snapshots::{Beside, Snapshot, SnapshotState};
 pub use toasts::{Level, Toasts};
 pub use truth::{Comparison, Figures, Refined, Refinement, TruthState, TruthView};
 pub use vary::VaryState;
@@ -48,6 +50,8 @@ pub struct State {
     pub show_presets: Option<bool>,
     /// Whether the timing overlay is there.
     pub show_overlay: bool,
+    /// Skies to go back to and to compare with.
+    pub snapshots: SnapshotState,
     /// Random changes.
     pub vary: VaryState,
     /// Whether the list of steps is there.
@@ -79,6 +83,7 @@ impl Default for State {
             show_panel: true,
             show_presets: None,
             show_overlay: false,
+            snapshots: SnapshotState::default(),
             vary: VaryState::default(),
             show_history: false,
             hide_all: false,
@@ -150,8 +155,14 @@ pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Reado
             });
         }
     }
+    if !state.hide_all && !state.snapshots.list().is_empty() {
+        egui::Panel::bottom("snapshots").show(ui, |ui| {
+            ui.add_space(3.0);
+            snapshots::show(ui, &mut state.snapshots, document, &mut actions);
+        });
+    }
     let central = egui::CentralPanel::no_frame().show(ui, |ui| {
-        viewport::show(ui, &mut state.viewport, &mut state.truth, document);
+        viewport::show(ui, &mut state.viewport, (&mut state.truth, &mut state.snapshots), document);
     });
     let area = central.response.rect;
     if state.show_overlay && !state.hide_all {

@@ -2,6 +2,7 @@
 
 use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 
+use super::snapshots::{self, Beside, SnapshotState};
 use super::truth::{Comparison, TruthState};
 use crate::app::document::Document;
 use crate::scene::param::Choice;
@@ -66,7 +67,12 @@ impl ViewportState {
 }
 
 /// Draws the picture and notes the gestures.
-pub(super) fn show(ui: &mut Ui, state: &mut ViewportState, truth: &mut TruthState, document: &Document) {
+pub(super) fn show(
+    ui: &mut Ui,
+    state: &mut ViewportState,
+    (truth, snapshots): (&mut TruthState, &mut SnapshotState),
+    document: &Document,
+) {
     let rect = ui.available_rect_before_wrap();
     state.rect = rect;
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
@@ -78,7 +84,9 @@ pub(super) fn show(ui: &mut Ui, state: &mut ViewportState, truth: &mut TruthStat
     match plain.or(state.picture) {
         Some(picture) => {
             if !compared(ui, rect, truth) {
-                image(&painter, fitted(rect, picture.size), picture.texture);
+                let place = fitted(rect, picture.size);
+                image(&painter, place, picture.texture);
+                beside(ui, place, snapshots);
             }
         }
         None => {
@@ -127,7 +135,7 @@ fn compared(ui: &Ui, rect: Rect, truth: &mut TruthState) -> bool {
             let left = Rect::from_min_max(place.min, Pos2::new(x, place.bottom()));
             caption(&painter.with_clip_rect(left.intersect(rect)), left, "Realtime", Align2::RIGHT_TOP);
             caption(&painter.with_clip_rect(right.intersect(rect)), right, reference, Align2::LEFT_TOP);
-            divider(ui, place, truth);
+            divider(ui, place, ("Divider between realtime and truth", "truth.divider"), &mut truth.divider);
         }
         Comparison::SideBySide => {
             // Half as large there is room for them above the controls.
@@ -153,16 +161,40 @@ fn compared(ui: &Ui, rect: Rect, truth: &mut TruthState) -> bool {
     true
 }
 
+/// Draws the chosen snapshot over the picture, as far as it is wanted.
+fn beside(ui: &Ui, place: Rect, state: &mut SnapshotState) {
+    let Some((snapshot, picture)) = state.chosen() else { return };
+    let painter = ui.painter_at(place);
+    match state.beside {
+        Beside::Flip if !snapshots::is_flipped(ui, state) => {}
+        Beside::Flip => {
+            image(&painter, place, picture.texture);
+            caption(&painter, place, &snapshot.name, Align2::CENTER_TOP);
+        }
+        Beside::Wipe => {
+            let left = snapshots::left_of(place, state.divider);
+            image(&painter.with_clip_rect(left), place, picture.texture);
+            caption(&painter.with_clip_rect(left), left, &snapshot.name, Align2::RIGHT_TOP);
+            divider(ui, place, ("Divider between snapshot and picture", "snapshots.divider"), &mut state.divider);
+        }
+        Beside::Difference => {
+            let Some(difference) = state.difference() else { return };
+            image(&painter, place, difference.texture);
+            caption(&painter, place, &format!("Difference to {}, ×8", snapshot.name), Align2::CENTER_TOP);
+        }
+    }
+}
+
 /// The line between the two pictures, and what moves it: the mouse, or the arrow keys when it has the focus.
-fn divider(ui: &Ui, place: Rect, truth: &mut TruthState) {
-    let x = place.left() + place.width() * truth.divider;
+fn divider(ui: &Ui, place: Rect, (name, key): (&str, &str), share: &mut f32) {
+    let x = place.left() + place.width() * *share;
     let grip = Rect::from_center_size(Pos2::new(x, place.center().y), Vec2::new(12.0, place.height()));
-    let response = ui.interact(grip, ui.scope_id().with("divider"), Sense::click_and_drag());
+    let response = ui.interact(grip, ui.scope_id().with(key), Sense::click_and_drag());
     let response = response.on_hover_and_drag_cursor(egui::CursorIcon::ResizeHorizontal);
     ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_role(egui::accesskit::Role::Splitter);
-        node.set_label("Divider between realtime and truth");
-        node.set_author_id("truth.divider");
+        node.set_label(name);
+        node.set_author_id(key);
     });
     if response.clicked() {
         response.request_focus();
@@ -175,8 +207,8 @@ fn divider(ui: &Ui, place: Rect, truth: &mut TruthState) {
         moved += 0.01 * place.width() * f32::from(i8::from(pressed(egui::Key::ArrowRight)));
         moved -= 0.01 * place.width() * f32::from(i8::from(pressed(egui::Key::ArrowLeft)));
     }
-    truth.divider = (truth.divider + moved / place.width().max(1.0)).clamp(0.0, 1.0);
-    let x = place.left() + place.width() * truth.divider;
+    *share = (*share + moved / place.width().max(1.0)).clamp(0.0, 1.0);
+    let x = place.left() + place.width() * *share;
     let width = if response.hovered() || response.dragged() || response.has_focus() { 3.0 } else { 1.5 };
     let painter = ui.painter_at(place);
     painter.vline(x, place.y_range(), egui::Stroke::new(width + 2.0, Color32::from_black_alpha(110)));

@@ -63,6 +63,7 @@ impl App {
         match outcome {
             Ok(outcome) => {
                 if outcome.has_picture {
+                    live.is_new = true;
                     live.draw_within(Duration::ZERO);
                 } else if live.status_of(wishes) != self.session.ui.truth.view.refinement {
                     live.draw_within(STATUS);
@@ -91,7 +92,35 @@ impl App {
     }
 }
 
+impl App {
+    /// Keeps the sky with the picture as the window shows it.
+    pub(super) fn take_snapshot(&mut self) {
+        let Some(live) = &mut self.live else { return };
+        match live.shown_rgba8(&self.session) {
+            Ok((_, pixels)) if pixels.is_empty() => {
+                self.session.ui.toasts.error("There is no picture to keep yet; wait for the first one");
+            }
+            Ok(picture) => {
+                let Session { ui, document, .. } = &mut self.session;
+                ui.snapshots.add(live.egui.context(), document, picture);
+                live.draw_within(Duration::ZERO);
+            }
+            Err(error) => self.session.ui.toasts.error(error),
+        }
+    }
+}
+
 impl Live {
+    /// Compares a new picture with the chosen snapshot, if that is to be seen.
+    pub(super) fn show_difference(&mut self, session: &mut Session) {
+        let snapshots = &session.ui.snapshots;
+        let is_wanted = snapshots.wants_difference() && (self.is_new || !snapshots.has_difference());
+        if is_wanted && let Ok((size, pixels)) = self.shown_rgba8(session) {
+            session.ui.snapshots.show_difference(self.egui.context(), (size, &pixels));
+            self.is_new = false;
+        }
+    }
+
     fn status_of(&self, wishes: Wishes) -> crate::ui::Refinement {
         self.viewport.truths.refinement(wishes)
     }
