@@ -13,6 +13,10 @@ use nephoscope::plan::Integrator;
 use nephoscope::scene::{CloudLayer, Preset, Quality, QualityLevel, Scene};
 use nephoscope::ui::{Comparison, Dialog, LabView, Measured, Phase, Picture, Readout, Refined, Refinement, TruthState};
 
+mod ui {
+    mod studio;
+}
+
 /// The panels with a session, and what was left for the window to do.
 struct Editor {
     harness: Harness<'static, Session>,
@@ -330,144 +334,6 @@ fn closing_with_changes_asks_and_without_quits() {
     assert!(editor.requests.borrow().is_empty(), "still open");
     editor.click_label("Discard");
     assert_eq!(*editor.requests.borrow(), vec![Request::Quit]);
-}
-
-#[test]
-fn steps_are_undone_redone_and_listed() {
-    let mut editor = Editor::new();
-    let begun = editor.scene().clone();
-    editor.type_number("weather.coverage", "0.7");
-    editor.type_number("sun.elevation_deg", "pi/6 rad");
-    assert!((editor.scene().sun.elevation_deg - 30.0).abs() < 1e-3, "{}", editor.scene().sun.elevation_deg);
-    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
-    editor.harness.run();
-    assert_eq!((editor.scene().weather.coverage, editor.scene().sun.elevation_deg), (0.7, begun.sun.elevation_deg));
-    editor.press(egui::Key::F8);
-    assert!(editor.has_label("edit weather.coverage"), "the list of steps");
-    editor.click("history.0");
-    assert_eq!(*editor.scene(), begun, "the beginning");
-    let redo = egui::Modifiers::COMMAND | egui::Modifiers::SHIFT;
-    editor.harness.key_press_modifiers(redo, egui::Key::Z);
-    editor.harness.run();
-    assert_eq!(editor.scene().weather.coverage, 0.7, "the first step again");
-    editor.click("history.2");
-    assert!((editor.scene().sun.elevation_deg - 30.0).abs() < 1e-3, "and the second");
-}
-
-#[test]
-fn an_opened_sky_is_undone_like_any_step() {
-    let mut editor = Editor::new();
-    editor.harness.state_mut().perform(Action::Ask(Request::Open("stormy".into())));
-    editor.harness.run();
-    assert_eq!(editor.document().name(), "Stormy");
-    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
-    editor.harness.run();
-    assert_eq!(editor.document().name(), "Test sky");
-}
-
-#[test]
-fn values_and_sections_are_copied_and_pasted_where_the_pointer_is() {
-    let mut editor = Editor::new();
-    editor.type_number("weather.coverage", "0.7");
-    let hover = |editor: &mut Editor, key: &str| {
-        editor.reach(key);
-        editor.with_key(key).hover();
-        editor.harness.run();
-        // The field that was typed into keeps no focus.
-        editor.press(egui::Key::Escape);
-    };
-    hover(&mut editor, "weather.coverage");
-    editor.harness.event(egui::Event::Copy);
-    editor.harness.step();
-    let copied = editor.harness.output().platform_output.commands.iter().find_map(|command| match command {
-        egui::OutputCommand::CopyText(text) => Some(text.clone()),
-        _ => None,
-    });
-    assert_eq!(copied.as_deref(), Some("weather.coverage=0.7\n"));
-    hover(&mut editor, "sun.azimuth_deg");
-    editor.harness.event(egui::Event::Paste("12.5".to_owned()));
-    editor.harness.run();
-    assert_eq!(editor.scene().sun.azimuth_deg, 12.5);
-    editor.harness.event(egui::Event::Paste("fast".to_owned()));
-    editor.harness.run();
-    assert_eq!(editor.scene().sun.azimuth_deg, 12.5);
-    assert!(editor.toasts().iter().any(|text| text.contains("Nothing was pasted")), "{:?}", editor.toasts());
-    editor.press(egui::Key::Backspace);
-    assert_eq!(editor.scene().sun.azimuth_deg, Scene::default().sun.azimuth_deg, "reset");
-    hover(&mut editor, "layers.0");
-    editor.harness.event(egui::Event::Paste("# layers.7\nbase_m=900\nphase.g=0.5\n".to_owned()));
-    editor.harness.run();
-    assert_eq!((editor.scene().layers[0].base_m, editor.scene().layers[0].phase.g), (900.0, 0.5));
-}
-
-#[test]
-fn snapshots_restore_and_are_held_beside_the_picture() {
-    let mut editor = Editor::new();
-    editor.type_number("weather.coverage", "0.2");
-    let shot = |editor: &mut Editor, grey: u8| {
-        let context = editor.harness.ctx.clone();
-        let session = editor.harness.state_mut();
-        session.ui.viewport.picture = Some(picture(1));
-        let pixels = [grey, grey, grey, 255].repeat(16 * 9);
-        session.ui.snapshots.add(&context, &session.document, ([16, 9], pixels));
-        editor.harness.run();
-    };
-    editor.press(egui::Key::F7);
-    assert_eq!(editor.requests.borrow().last(), Some(&Request::Snapshot));
-    shot(&mut editor, 100);
-    editor.type_number("weather.coverage", "0.8");
-    shot(&mut editor, 110);
-    editor.click("snapshots.0");
-    editor.click("snapshots.Wipe");
-    assert!(editor.harness.query_by_label("Divider between snapshot and picture").is_some());
-    editor.click("snapshots.Difference");
-    assert!(editor.harness.state().ui.snapshots.wants_difference());
-    // A picture of another size than the snapshot's.
-    let context = editor.harness.ctx.clone();
-    editor.harness.state_mut().ui.snapshots.show_difference(&context, ([4, 3], &[103; 48]));
-    editor.harness.run();
-    editor.harness.state_mut().ui.snapshots.show_difference(&context, ([4, 3], &[]));
-    editor.with_key("snapshots.0").click_secondary();
-    editor.harness.run();
-    editor.click_label("Restore");
-    assert_eq!(editor.scene().weather.coverage, 0.2);
-    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
-    editor.harness.run();
-    assert_eq!(editor.scene().weather.coverage, 0.8, "restoring is undone");
-}
-
-#[test]
-fn the_panel_shows_what_is_modified_or_little() {
-    let mut editor = Editor::new();
-    editor.type_number("weather.coverage", "0.7");
-    editor.click("filter.modified");
-    assert!(editor.harness.query(by().predicate(|node| node.author_id() == Some("weather.coverage"))).is_some());
-    assert!(editor.harness.query(by().predicate(|node| node.author_id() == Some("sun.elevation_deg"))).is_none());
-    editor.click("filter.modified");
-    editor.click("filter.simple");
-    for key in ["weather.coverage", "sun.elevation_deg", "layers.0.base_m", "display.exposure_ev"] {
-        editor.reach(key);
-    }
-    assert!(editor.harness.query(by().predicate(|node| node.author_id() == Some("layers.0.phase.g"))).is_none());
-}
-
-#[test]
-fn a_varied_sky_starts_from_the_same_one_and_keeps_what_is_ticked() {
-    let mut editor = Editor::new();
-    let begun = editor.scene().clone();
-    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::R);
-    editor.harness.run();
-    editor.click("vary.keep.sun");
-    editor.click_label("Vary");
-    let first = editor.scene().clone();
-    assert_ne!(first, begun, "it is another sky");
-    assert_eq!((&first.sun, &first.camera), (&begun.sun, &begun.camera), "but for what is kept");
-    editor.click_label("Another");
-    assert_ne!(*editor.scene(), first, "another seed");
-    while editor.document().can_undo() {
-        editor.harness.state_mut().perform(Action::Undo);
-    }
-    assert_eq!(*editor.scene(), begun, "back to the beginning");
 }
 
 #[test]

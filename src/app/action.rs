@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::choices;
 use crate::lab::accuracy::Setting;
 use crate::lab::bench::Rounds;
 use crate::lab::suite::SuiteKind;
@@ -94,6 +95,17 @@ pub enum Request {
     Export(Export),
     /// Take or refuse the document that a crash left behind.
     Recover(bool),
+    /// Take one part of another sky.
+    TakeOver {
+        /// A preset's file or the short name of a built-in one.
+        source: PathBuf,
+        /// Which part.
+        part: Part,
+    },
+    /// Begin to change the sky towards another one.
+    Morph(PathBuf),
+    /// Keep a small picture of a preset that was saved.
+    KeepPicture(PathBuf),
     /// Put text from the clipboard into a parameter or section; without one it is a whole sky.
     Paste {
         /// The parameter's or section's key.
@@ -107,6 +119,43 @@ pub enum Request {
     ToggleFullScreen,
     /// Close the window.
     Quit,
+}
+
+choices! {
+    /// A part of a sky that can be taken over alone.
+    pub enum Part {
+        /// Layers and the space that they lie in.
+        Clouds ("Clouds"),
+        /// Where clouds are, and the wind.
+        Weather ("Weather and wind"),
+        /// Sun, moon, air and how clouds scatter.
+        Light ("Light and air"),
+        /// The ground.
+        Ground ("Ground"),
+        /// Where the eye is.
+        Camera ("Camera"),
+        /// How light becomes the picture.
+        Display ("Display"),
+    }
+}
+
+impl Part {
+    /// Gives `scene` this part of `other`.
+    pub fn take_over(self, scene: &mut Scene, other: &Scene) {
+        let other = other.clone();
+        match self {
+            Self::Clouds => (scene.layers, scene.domain) = (other.layers, other.domain),
+            Self::Weather => (scene.weather, scene.wind) = (other.weather, other.wind),
+            Self::Light => {
+                (scene.sun, scene.moon, scene.air) = (other.sun, other.moon, other.air);
+                (scene.scattering, scene.plain_light) = (other.scattering, other.plain_light);
+                scene.sunshafts = other.sunshafts;
+            }
+            Self::Ground => scene.ground = other.ground,
+            Self::Camera => scene.camera = other.camera,
+            Self::Display => scene.display = other.display,
+        }
+    }
 }
 
 /// A wish about measuring.
@@ -193,6 +242,7 @@ impl Action {
     /// What the action is called in histories and messages.
     pub fn name(&self) -> String {
         match self {
+            Self::EditScene { key, .. } if key == "vary" => "vary the sky".to_owned(),
             Self::EditScene { key, .. } => format!("edit {key}"),
             Self::EditQuality { key, .. } => format!("edit quality.{key}"),
             Self::SetQualityLevel(_) => "set the quality level".to_owned(),
@@ -239,6 +289,9 @@ impl Request {
             Self::Snapshot => "snapshot",
             Self::Export(_) => "export",
             Self::Recover(_) => "recover",
+            Self::TakeOver { .. } => "take over",
+            Self::Morph(_) => "morph",
+            Self::KeepPicture(_) => "keep a picture",
             Self::Paste { .. } => "paste",
             Self::Lab(_) => "measure",
             Self::ToggleFullScreen => "full screen",

@@ -11,6 +11,7 @@ mod hands;
 mod history;
 pub mod lab;
 mod painter;
+pub mod preferences;
 mod recovery;
 pub mod session;
 mod statistics;

@@ -1,5 +1,6 @@
 //! Keeps a copy of unsaved work, so that a crash costs at most half a minute.
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -9,33 +10,65 @@ use crate::scene::Preset;
 /// How often the copy is renewed.
 const PERIOD: Duration = Duration::from_secs(30);
 
+/// Windows that may be open at a time, each with a copy of its own.
+const MOST_WINDOWS: u32 = 64;
+
 /// The copy of unsaved work.
 #[derive(Debug)]
 pub(super) struct Recovery {
     path: PathBuf,
     written: Option<Preset>,
     last: Instant,
+    /// Held while the window is open, so that other windows leave its copy alone.
+    _lock: Option<File>,
+}
+
+fn copy_of(folder: &Path, window: u32) -> PathBuf {
+    folder.join(if window == 0 { "recovery.ron".to_owned() } else { format!("recovery-{window}.ron") })
+}
+
+/// The lock of a window's copy, unless another window holds it.
+fn lock_of(folder: &Path, window: u32) -> Option<File> {
+    let lock = File::create(folder.join(format!("recovery-{window}.lock"))).ok()?;
+    lock.try_lock().is_ok().then_some(lock)
 }
 
 impl Recovery {
     /// Copies go into `folder`; returns what an earlier run left there, or why it cannot be read. A damaged copy is put aside:
-    /// somebody may still find something in it.
+    /// somebody may still find something in it. Copies of windows that are open are not touched.
     pub(super) fn open(folder: &Path) -> (Self, Option<Result<Preset, String>>) {
-        let path = folder.join("recovery.ron");
-        let left = path.exists().then(|| {
-            Preset::load(&path).map_err(|error| {
-                let name = |index: u32| folder.join(format!("recovery-damaged-{index}.ron"));
-                let aside = (1..1000).map(name).find(|aside| !aside.exists()).unwrap_or_else(|| name(1000));
-                match std::fs::rename(&path, &aside) {
-                    Ok(()) => format!("the copy of unsaved work is damaged and kept as {}: {error}", aside.display()),
-                    Err(why) => format!(
-                        "the copy of unsaved work is damaged and cannot be put aside, copy {} yourself: {error}; {why}",
-                        path.display()
-                    ),
-                }
-            })
-        });
-        (Self { path, written: None, last: Instant::now() }, left)
+        // A folder that cannot be made has no copies, and gets none.
+        let _ = std::fs::create_dir_all(folder);
+        let mut own = None;
+        for window in 0..MOST_WINDOWS {
+            let path = copy_of(folder, window);
+            if own.is_some() && !path.exists() {
+                continue;
+            }
+            let Some(lock) = lock_of(folder, window) else { continue };
+            if path.exists() {
+                // A copy that nobody holds: that of a window that has crashed.
+                let left = Self::read(folder, &path);
+                return (Self { path, written: None, last: Instant::now(), _lock: Some(lock) }, Some(left));
+            }
+            own.get_or_insert((path, lock));
+        }
+        let (path, lock) = own.map_or_else(|| (copy_of(folder, 0), None), |(path, lock)| (path, Some(lock)));
+        (Self { path, written: None, last: Instant::now(), _lock: lock }, None)
+    }
+
+    fn read(folder: &Path, path: &Path) -> Result<Preset, String> {
+        Preset::load(path).map_err(|error| {
+            let name = |index: u32| folder.join(format!("recovery-damaged-{index}.ron"));
+            let aside = (1..1000).map(name).find(|aside| !aside.exists()).unwrap_or_else(|| name(1000));
+            match std::fs::rename(path, &aside) {
+                Ok(()) => format!("the copy of unsaved work is damaged and kept as {}: {error}", aside.display()),
+                Err(why) => format!(
+                    "the copy of unsaved work is damaged and cannot be put aside, copy {} yourself: {error}; {why}",
+                    path.display()
+                ),
+            }
+        })
     }
 
     /// Renews the copy if it is time and there is unsaved work; takes it away if there is none.
@@ -88,13 +121,14 @@ mod tests {
         let mut document = Document::new(Preset::default(), Quality::default());
         document.apply(&Action::Rename("Storm".to_owned()));
         recovery.keep(&document);
-        let (_, left) = Recovery::open(&state);
-        assert_eq!(left.expect("a copy").expect("a sound one").name, "Storm");
+        let copy = Preset::load(&state.join("recovery.ron")).expect("a sound copy");
+        assert_eq!(copy.name, "Storm");
         assert_eq!(recovery.due_in(&document), None, "the copy is as new as the work");
         document.apply(&Action::Rename("Storms".to_owned()));
         assert!(recovery.due_in(&document).is_some(), "it is no longer");
         document.mark_saved(folder.path().join("storm.ron"));
         recovery.keep(&document);
+        drop(recovery);
         assert!(Recovery::open(&state).1.is_none(), "saved work needs no copy");
     }
 
@@ -110,6 +144,30 @@ mod tests {
         recovery.keep(&document);
         let aside = std::fs::read_to_string(folder.path().join("recovery-damaged-1.ron")).expect("kept");
         assert!(aside.ends_with("(lay"), "as it was");
+        drop(recovery);
         assert_eq!(Recovery::open(folder.path()).1.expect("a copy").expect("a sound one").name, "Next");
+    }
+
+    #[test]
+    fn windows_leave_each_other_s_copies_alone() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let edited = |name: &str| {
+            let mut document = Document::new(Preset::default(), Quality::default());
+            document.apply(&Action::Rename(name.to_owned()));
+            document
+        };
+        let (mut one, left) = Recovery::open(folder.path());
+        assert!(left.is_none(), "nothing was left");
+        one.keep(&edited("one"));
+        let (mut two, left) = Recovery::open(folder.path());
+        assert!(left.is_none(), "the first window is open");
+        two.keep(&edited("two"));
+        // The second window crashes: its lock goes, its copy stays.
+        drop(two);
+        let (three, left) = Recovery::open(folder.path());
+        assert_eq!(left.expect("a copy").expect("sound").name, "two");
+        drop((one, three));
+        let (_, left) = Recovery::open(folder.path());
+        assert_eq!(left.expect("a copy").expect("sound").name, "one");
     }
 }

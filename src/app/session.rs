@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::action::{Action, Answer, Browse, Request};
+use super::action::{Action, Answer, Browse, Part, Request};
 use super::document::Document;
+use super::preferences::Preferences;
 use super::storage;
 use crate::files::{self, Origin, Sky};
-use crate::scene::{Preset, Quality, Scene, clip};
+use crate::scene::param::Choice as _;
+use crate::scene::{MapSource, Preset, Quality, Scene, clip};
 use crate::ui::{self, Dialog, set_file_in};
 
 /// Where the program keeps what belongs to the user.
@@ -35,11 +37,19 @@ impl Folders {
         }
     }
 
+    /// Small pictures of presets.
+    fn thumbnails(&self) -> PathBuf {
+        self.state.join("thumbnails")
+    }
+
     /// All folders below one.
     pub fn below(root: &Path) -> Self {
         Self { presets: root.join("presets"), pictures: root.join("pictures"), state: root.join("state") }
     }
 }
+
+/// The file of the preferences, in the folder of the program's state.
+const PREFERENCES: &str = "preferences.ron";
 
 /// Document, panels and pending questions.
 #[derive(Debug)]
@@ -50,6 +60,10 @@ pub struct Session {
     pub ui: ui::State,
     /// Where things are kept.
     pub folders: Folders,
+    /// What is kept between runs.
+    pub preferences: Preferences,
+    /// The same as it was written last.
+    kept: Preferences,
     /// A file that others have changed and that the user was told of.
     warned_of: Option<PathBuf>,
     /// What waits for the answer about unsaved changes.
@@ -61,8 +75,11 @@ pub struct Session {
 impl Session {
     /// A session that edits `document`.
     pub fn new(document: Document, folders: Folders) -> Self {
-        let ui = ui::State { library: storage::library(&folders.presets), ..ui::State::default() };
-        Self { document, ui, folders, pending: None, recovered: None, warned_of: None }
+        let library = storage::library(&folders.presets, &folders.thumbnails());
+        let ui = ui::State { library, ..ui::State::default() };
+        let preferences = Preferences::load(&folders.state.join(PREFERENCES));
+        let kept = preferences.clone();
+        Self { document, ui, folders, preferences, kept, pending: None, recovered: None, warned_of: None }
     }
 
     /// Asks whether to take what a crash left behind.
@@ -74,13 +91,38 @@ impl Session {
     /// Draws one frame of the panels, carries out what the user wants, and returns what only the window can do.
     pub fn frame(&mut self, ui: &mut egui::Ui, readout: &ui::Readout) -> Vec<Request> {
         self.document.hold(ui.input(|input| input.pointer.any_down()));
-        let actions = ui::show(ui, &mut self.ui, &self.document, readout);
+        let actions = ui::show(ui, &mut self.ui, (&self.document, &mut self.preferences), readout);
         let requests = actions.into_iter().filter_map(|action| self.perform(action)).collect();
         if self.ui.dialog.is_none() {
             // Whoever closes the question or the path dialog stays with the document.
             self.pending = None;
         }
+        self.keep_preferences(ui.ctx());
         requests
+    }
+
+    /// Gives the panels theme and size as they were in the last run.
+    pub fn apply_preferences(&self, context: &egui::Context) {
+        if let Some(light) = self.preferences.light {
+            context.set_theme(if light { egui::Theme::Light } else { egui::Theme::Dark });
+        }
+        context.set_zoom_factor(self.preferences.zoom);
+    }
+
+    /// Writes the preferences if they have changed. Who cannot write them loses no work, and is told once.
+    fn keep_preferences(&mut self, context: &egui::Context) {
+        self.preferences.light = match context.options(|options| options.theme_preference) {
+            egui::ThemePreference::Light => Some(true),
+            egui::ThemePreference::Dark => Some(false),
+            egui::ThemePreference::System => None,
+        };
+        self.preferences.zoom = context.zoom_factor();
+        if self.preferences != self.kept {
+            if let Err(error) = self.preferences.save(&self.folders.state.join(PREFERENCES)) {
+                self.ui.toasts.error(format!("Preferences are not kept: {error}"));
+            }
+            self.kept = self.preferences.clone();
+        }
     }
 
     /// Carries out what the user wants; returns what only the window can do.
@@ -100,16 +142,33 @@ impl Session {
             Request::Save => {
                 match self.document.path().cloned() {
                     Some(path) if self.is_changed_by_others(&path) => {}
-                    Some(path) => {
-                        self.save_to(&path);
-                    }
+                    Some(path) => return self.save_to(&path).then_some(Request::KeepPicture(path)),
                     None => self.ask_where_to_save(),
                 }
                 None
             }
             Request::SaveAs(path) => {
                 let saved = self.save_to(&path);
-                self.go_on_after_saving(saved)
+                self.go_on_after_saving(saved).or_else(|| saved.then_some(Request::KeepPicture(path)))
+            }
+            Request::TakeOver { source, part } => {
+                if let Some(sky) = self.other_sky(&source) {
+                    let mut scene = self.document.preset().scene.clone();
+                    part.take_over(&mut scene, &sky.preset.scene);
+                    scene.mend();
+                    let what = if part == Part::Camera { "camera" } else { part.title() };
+                    let key = format!("{what} of {}", sky.preset.name);
+                    self.document.apply(&Action::EditScene { key, scene: Box::new(scene) });
+                }
+                None
+            }
+            Request::Morph(source) => {
+                if let Some(sky) = self.other_sky(&source) {
+                    let from = self.document.preset().scene.clone();
+                    let (to, name) = (sky.preset.scene, sky.preset.name);
+                    self.ui.library.morph = Some(ui::Morph { from, to, name, share: 0.0 });
+                }
+                None
             }
             Request::Answer(answer) => self.answer(answer),
             Request::Recover(taken) => {
@@ -129,6 +188,7 @@ impl Session {
             Request::Browse(_)
             | Request::Screenshot
             | Request::Snapshot
+            | Request::KeepPicture(_)
             | Request::Export(_)
             | Request::Lab(_)
             | Request::ToggleFullScreen => Some(request),
@@ -229,6 +289,7 @@ impl Session {
         match self.document.preset().save(path) {
             Ok(()) => {
                 self.document.mark_saved(path.to_owned());
+                self.preferences.used(path);
                 self.ui.toasts.info(format!("Saved {}", path.display()));
                 self.refresh_library();
                 true
@@ -240,16 +301,48 @@ impl Session {
         }
     }
 
+    /// Another sky, of which something is wanted; says why there is none.
+    fn other_sky(&mut self, source: &Path) -> Option<Sky> {
+        files::open(source).map_err(|error| self.ui.toasts.error(error)).ok()
+    }
+
+    /// Keeps what the window shows as the picture of a preset that was just saved.
+    pub(super) fn keep_picture(&mut self, preset: &Path, (size, rgba8): ([u32; 2], &[u8])) {
+        storage::keep_picture(&self.folders.thumbnails(), preset, (size, rgba8));
+        self.refresh_library();
+    }
+
     /// Opens a sky; the document stays as it is if that fails.
     pub fn open(&mut self, source: &Path) {
         match files::open(source) {
             Ok(sky) => {
+                if !matches!(sky.origin, Origin::Builtin(_)) {
+                    self.preferences.used(source);
+                }
                 let opened = document_of(sky, self.document.quality().clone());
                 let step = format!("open {}", opened.name());
                 self.document.replace_by(opened, step);
             }
             Err(error) => self.ui.toasts.error(error),
         }
+    }
+
+    /// Takes a file that was dropped on the window: a sky, or a picture without one, which becomes the weather map.
+    pub fn drop_file(&mut self, path: &Path) -> Option<Request> {
+        let is_picture = path
+            .extension()
+            .and_then(|ending| ending.to_str())
+            .is_some_and(|ending| ["png", "exr"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
+        if !is_picture || files::open(path).is_ok() {
+            return self.perform(Action::Ask(Request::Open(path.to_owned())));
+        }
+        let mut scene = self.document.preset().scene.clone();
+        let layer = scene.weather.layers.first_mut()?;
+        layer.source = MapSource::Image;
+        layer.image.0 = path.display().to_string();
+        self.document.apply(&Action::EditScene { key: "weather.layers.0.image".to_owned(), scene: Box::new(scene) });
+        self.ui.toasts.info(format!("{} holds no sky and became the weather map (Ctrl+Z undoes it)", path.display()));
+        None
     }
 
     /// Takes over text from the clipboard: values below a key, or a whole sky. On an error nothing has changed.
@@ -287,8 +380,7 @@ impl Session {
     }
 
     fn refresh_library(&mut self) {
-        let search = std::mem::take(&mut self.ui.library.search);
-        self.ui.library = ui::Library { search, ..storage::library(&self.folders.presets) };
+        self.ui.library.refresh(storage::library(&self.folders.presets, &self.folders.thumbnails()));
     }
 }
 

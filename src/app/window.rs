@@ -157,7 +157,10 @@ impl ApplicationHandler<Event> for App {
             return;
         }
         match Live::open(event_loop, self.proxy.clone(), &self.adapter) {
-            Ok(live) => self.live = Some(live),
+            Ok(live) => {
+                self.session.apply_preferences(live.egui.context());
+                self.live = Some(live);
+            }
             Err(error) => self.fail(event_loop, error),
         }
     }
@@ -184,7 +187,9 @@ impl ApplicationHandler<Event> for App {
                 live.draw_within(Duration::ZERO);
             }
             WindowEvent::DroppedFile(path) => {
-                self.perform(event_loop, Action::Ask(Request::Open(path.clone())));
+                let request = self.session.drop_file(path);
+                live.draw_within(Duration::ZERO);
+                request.into_iter().for_each(|request| self.fulfil(event_loop, request));
             }
             _ => {
                 let typing = live.egui.context().egui_wants_keyboard_input();
@@ -375,6 +380,7 @@ impl App {
             Request::Browse(purpose) => self.browse(purpose),
             Request::Screenshot => self.screenshot(),
             Request::Snapshot => self.take_snapshot(),
+            Request::KeepPicture(preset) => self.keep_picture(&preset),
             Request::Export(export) => {
                 let Some(live) = &self.live else { return };
                 let document = &self.session.document;
@@ -403,6 +409,8 @@ impl App {
             | Request::Save
             | Request::SaveAs(_)
             | Request::Answer(_)
+            | Request::TakeOver { .. }
+            | Request::Morph(_)
             | Request::Paste { .. } => {}
         }
     }

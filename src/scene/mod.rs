@@ -12,6 +12,7 @@ pub mod expression;
 mod frame;
 mod layer;
 mod light;
+pub mod morph;
 pub mod nearest;
 pub mod param;
 mod place;

@@ -22,7 +22,7 @@ pub use dialogs::{Dialog, ExportForm};
 pub use lab::{LabState, LabView, Measured, Phase};
 pub use overlay::{PassLine, Readout};
 pub use panel::PanelState;
-pub use presets::{Entry, Library};
+pub use presets::{Entry, Library, Morph, Thumbnail};
 pub use probe::set_file_in;
 pub use snapshots::{Beside, Snapshot, SnapshotState};
 pub use toasts::{Level, Toasts};
@@ -34,6 +34,7 @@ use egui::{Margin, Theme, Ui};
 
 use crate::app::action::Action;
 use crate::app::document::Document;
+use crate::app::preferences::Preferences;
 use crate::plan::Forced;
 
 /// Below this width of the window the preset list is not opened by itself, in points.
@@ -134,12 +135,19 @@ pub fn style(context: &egui::Context) {
 }
 
 /// Draws everything, and returns what the user wants.
-pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Readout) -> Vec<Action> {
+pub fn show(
+    ui: &mut Ui,
+    state: &mut State,
+    (document, preferences): (&Document, &mut Preferences),
+    readout: &Readout,
+) -> Vec<Action> {
     let mut actions = command::take(ui, state, document);
     let width = ui.available_width();
     if !state.hide_all {
         let bar = egui::Frame::side_top_panel(ui.style()).inner_margin(Margin::symmetric(8, 4));
-        egui::Panel::top("top bar").frame(bar).show(ui, |ui| top_bar::show(ui, state, document, &mut actions));
+        egui::Panel::top("top bar").frame(bar).show(ui, |ui| {
+            top_bar::show(ui, state, (document, preferences), &mut actions);
+        });
         let most = (width * 0.55).max(260.0);
         if state.show_panel {
             let size = if width < 900.0 { 300.0 } else { 350.0 };
@@ -151,12 +159,12 @@ pub fn show(ui: &mut Ui, state: &mut State, document: &Document, readout: &Reado
         if state.presets_visible(width) {
             egui::Panel::left("presets").default_size(190.0).size_range(140.0..=300.0).show(ui, |ui| {
                 ui.add_space(4.0);
-                actions.extend(presets::show(ui, &mut state.library, document));
+                actions.extend(presets::show(ui, &mut state.library, (document, preferences)));
             });
         }
     }
     if !state.hide_all && !state.snapshots.list().is_empty() {
-        egui::Panel::bottom("snapshots").show(ui, |ui| {
+        egui::Panel::bottom("snapshots").exact_size(snapshots::HEIGHT).show(ui, |ui| {
             ui.add_space(3.0);
             snapshots::show(ui, &mut state.snapshots, document, &mut actions);
         });

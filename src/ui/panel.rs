@@ -59,28 +59,30 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: 
 }
 
 fn filter_row(ui: &mut Ui, state: &mut PanelState) {
-    ui.horizontal(|ui| {
-        let width = ui.available_width() - 112.0;
-        let edit = egui::TextEdit::singleline(&mut state.filter).hint_text("Filter parameters").desired_width(width);
-        let response =
-            ui.add(edit).on_hover_text("Shows only parameters whose name, key or help contains this (Ctrl+F)");
-        row::name(ui, &response, "Filter parameters", "filter");
-        if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, egui::Key::F)) {
-            response.request_focus();
-        }
+    let height = ui.spacing().interact_size.y;
+    let whole = egui::vec2(ui.available_width(), height);
+    ui.allocate_ui_with_layout(whole, egui::Layout::right_to_left(egui::Align::Center), |ui| {
+        let simple = ui.selectable_label(state.simple, "Simple");
+        let simple = simple.on_hover_text("Shows only the few parameters that make most of a sky");
+        row::name(ui, &simple, "Simple view", "filter.simple");
+        state.simple ^= simple.clicked();
+        let modified = ui.selectable_label(state.modified_only, "≠");
+        let modified = modified.on_hover_text("Shows only what differs from its default");
+        row::name(ui, &modified, "Modified only", "filter.modified");
+        state.modified_only ^= modified.clicked();
         let clear = ui.add_enabled(!state.filter.is_empty(), egui::Button::new("×")).on_hover_text("Clear the filter");
         row::name(ui, &clear, "Clear filter", "filter.clear");
         if clear.clicked() {
             state.filter.clear();
         }
-        let modified = ui.selectable_label(state.modified_only, "≠");
-        let modified = modified.on_hover_text("Shows only what differs from its default");
-        row::name(ui, &modified, "Modified only", "filter.modified");
-        state.modified_only ^= modified.clicked();
-        let simple = ui.selectable_label(state.simple, "Simple");
-        let simple = simple.on_hover_text("Shows only the few parameters that make most of a sky");
-        row::name(ui, &simple, "Simple view", "filter.simple");
-        state.simple ^= simple.clicked();
+        // What is left, whatever the buttons took.
+        let edit = egui::TextEdit::singleline(&mut state.filter).hint_text("Filter parameters");
+        let response = ui.add(edit.desired_width(ui.available_width() - 8.0));
+        let response = response.on_hover_text("Shows only parameters whose name, key or help contains this (Ctrl+F)");
+        row::name(ui, &response, "Filter parameters", "filter");
+        if ui.input_mut(|input| input.consume_key(egui::Modifiers::COMMAND, egui::Key::F)) {
+            response.request_focus();
+        }
     });
     ui.add_space(2.0);
 }

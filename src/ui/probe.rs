@@ -1,6 +1,7 @@
 //! Small visitors that ask about parameters or change many of them: what is modified, what a filter matches, reset,
 //! duplicate, and set a file's name by its key.
 
+use crate::scene::morph::Values;
 use crate::scene::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor, label};
 
 /// Parameters of the simple view; the number of a list's item is left out.
@@ -160,77 +161,12 @@ impl Visitor for Reset {
     }
 }
 
-/// A value of any type, on its way from one item of a list to another.
-#[derive(Clone, Debug)]
-enum Any {
-    Float(f32),
-    Count(u32),
-    Switch(bool),
-    Choice(usize),
-    Colour(Colour),
-    File(FileName),
-}
-
-/// Reads values in order on the first visit and writes them in the same order on the second.
-#[derive(Debug, Default)]
-struct Carry {
-    values: std::collections::VecDeque<Any>,
-    writing: bool,
-}
-
-macro_rules! carry {
-    ($self:ident, $value:ident, $Kind:ident) => {
-        if !$self.writing {
-            $self.values.push_back(Any::$Kind($value.clone()));
-        } else if let Some(Any::$Kind(carried)) = $self.values.pop_front() {
-            *$value = carried;
-        }
-    };
-}
-
-impl Visitor for Carry {
-    fn float(&mut self, _: &Info<f32>, value: &mut f32) {
-        carry!(self, value, Float);
-    }
-
-    fn count(&mut self, _: &Info<u32>, value: &mut u32) {
-        carry!(self, value, Count);
-    }
-
-    fn switch(&mut self, _: &Info<bool>, value: &mut bool) {
-        carry!(self, value, Switch);
-    }
-
-    fn choice(&mut self, _: &ChoiceInfo, index: &mut usize) {
-        carry!(self, index, Choice);
-    }
-
-    fn colour(&mut self, _: &Info<Colour>, value: &mut Colour) {
-        carry!(self, value, Colour);
-    }
-
-    fn file(&mut self, _: &Info<FileName>, value: &mut FileName) {
-        carry!(self, value, File);
-    }
-
-    fn group(&mut self, _: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {
-        children(self);
-    }
-
-    fn list(&mut self, _: &GroupInfo, list: &mut dyn List) {
-        for index in 0..list.count() {
-            list.visit_item(index, self);
-        }
-    }
-}
-
 /// Appends a copy of item `index` to the list.
 pub(super) fn duplicate_last_from(list: &mut dyn List, index: usize) {
-    let mut carry = Carry::default();
-    list.visit_item(index, &mut carry);
+    let mut values = Values::default();
+    list.visit_item(index, &mut values);
     list.append();
-    carry.writing = true;
-    list.visit_item(list.count() - 1, &mut carry);
+    values.write(|visitor| list.visit_item(list.count() - 1, visitor));
 }
 
 /// Gives the file parameter with this key a new value; tells whether there is one.

@@ -13,6 +13,8 @@ use crate::scene::{Preset, Quality, edit};
 const MOST: usize = 24;
 /// Height of a thumbnail, in points.
 const THUMBNAIL: f32 = 62.0;
+/// Height of the strip, in points.
+pub(super) const HEIGHT: f32 = 108.0;
 /// How many times differences are enlarged.
 const GAIN: i32 = 8;
 
@@ -179,7 +181,7 @@ enum Wish {
 /// Draws the strip.
 pub(super) fn show(ui: &mut Ui, state: &mut SnapshotState, document: &Document, actions: &mut Vec<Action>) {
     let mut wish = None;
-    ui.horizontal(|ui| {
+    ui.horizontal_top(|ui| {
         ui.vertical(|ui| {
             let take = ui.button("+ Snapshot").on_hover_text("Keeps the sky and its picture (F7)");
             if take.clicked() {
@@ -206,7 +208,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut SnapshotState, document: &Document, 
         });
         ui.separator();
         ScrollArea::horizontal().id_salt("snapshot strip").auto_shrink([false, true]).show(ui, |ui| {
-            ui.horizontal(|ui| {
+            ui.horizontal_top(|ui| {
                 for (index, snapshot) in state.list.iter().enumerate() {
                     thumbnail(ui, (index, snapshot), state.chosen == Some(index), (document, &mut wish));
                 }
@@ -246,11 +248,11 @@ fn thumbnail(
             *wish = Some(Wish::Choose(index));
         }
         response.context_menu(|ui| {
-            let entries: [(&str, fn(usize) -> Wish); 3] =
-                [("Restore", Wish::Restore), ("Compare", Wish::Choose), ("Remove", Wish::Remove)];
-            for (title, make) in entries {
+            let entries =
+                [("Restore", Wish::Restore(index)), ("Compare", Wish::Choose(index)), ("Remove", Wish::Remove(index))];
+            for (title, wanted) in entries {
                 if ui.button(title).clicked() {
-                    *wish = Some(make(index));
+                    *wish = Some(wanted);
                     ui.close();
                 }
             }

@@ -3,15 +3,21 @@
 use egui::{Align, Layout, Theme, Ui};
 
 use super::{Command, State, row};
-use crate::app::action::Action;
+use crate::app::action::{Action, Request};
 use crate::app::document::{Document, TIME_FACTOR_RANGE};
+use crate::app::preferences::Preferences;
 use crate::scene::expression::evaluate;
 use crate::scene::param::Unit;
 
 /// Draws the bar.
-pub(super) fn show(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
+pub(super) fn show(
+    ui: &mut Ui,
+    state: &mut State,
+    (document, preferences): (&Document, &Preferences),
+    actions: &mut Vec<Action>,
+) {
     ui.horizontal(|ui| {
-        menus(ui, state, document, actions);
+        menus(ui, state, (document, preferences), actions);
         ui.separator();
         time(ui, document, actions);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -30,7 +36,12 @@ pub(super) fn show(ui: &mut Ui, state: &mut State, document: &Document, actions:
     });
 }
 
-fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
+fn menus(
+    ui: &mut Ui,
+    state: &mut State,
+    (document, preferences): (&Document, &Preferences),
+    actions: &mut Vec<Action>,
+) {
     let mut chosen = None;
     ui.menu_button("File", |ui| {
         let groups = [
@@ -40,6 +51,10 @@ fn menus(ui: &mut Ui, state: &mut State, document: &Document, actions: &mut Vec<
             &[Command::Quit],
         ];
         entries(ui, (state, document), &groups, &mut chosen);
+        ui.separator();
+        ui.add_enabled_ui(!preferences.recent.is_empty(), |ui| {
+            ui.menu_button("Open recent", |ui| recent(ui, preferences, actions));
+        });
     });
     ui.menu_button("Edit", |ui| {
         let groups = [&[Command::Undo, Command::Redo, Command::History][..], &[Command::ViewBack, Command::ViewForth]];
@@ -76,6 +91,20 @@ fn entries(ui: &mut Ui, (state, document): (&State, &Document), groups: &[&[Comm
                 *chosen = Some(*command);
                 ui.close();
             }
+        }
+    }
+}
+
+/// The files that were opened or saved last.
+fn recent(ui: &mut Ui, preferences: &Preferences, actions: &mut Vec<Action>) {
+    ui.set_min_width(260.0);
+    for path in &preferences.recent {
+        let name =
+            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
+        let button = ui.add_enabled(path.exists(), egui::Button::new(name).truncate());
+        if button.on_hover_text(path.display().to_string()).on_disabled_hover_text("It is no longer there").clicked() {
+            actions.push(Action::Ask(Request::Open(path.clone())));
+            ui.close();
         }
     }
 }

@@ -42,7 +42,7 @@ impl VaryState {
         };
         let mut varied = base.clone();
         vary(&mut varied, self.seed, self.percent / 100.0, &|key| self.kept.contains(key));
-        varied.give_grids_a_box();
+        varied.mend();
         self.last = Some(Box::new((base, varied.clone())));
         varied
     }

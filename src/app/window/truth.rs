@@ -110,6 +110,17 @@ impl App {
     }
 }
 
+impl App {
+    /// Keeps what the window shows as the small picture of a preset.
+    pub(super) fn keep_picture(&mut self, preset: &std::path::Path) {
+        if let Some(live) = &self.live
+            && let Ok((size, pixels)) = live.shown_rgba8(&self.session)
+        {
+            self.session.keep_picture(preset, (size, &pixels));
+        }
+    }
+}
+
 impl Live {
     /// Compares a new picture with the chosen snapshot, if that is to be seen.
     pub(super) fn show_difference(&mut self, session: &mut Session) {
