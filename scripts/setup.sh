@@ -36,7 +36,7 @@ temporary_folder() {
 }
 
 run_packages=(mesa-vulkan-drivers libvulkan1 libxkbcommon-x11-0 libxcursor1 libxi6 libxrandr2)
-test_packages=(xvfb xdotool openexr openimageio-tools)
+test_packages=(xvfb xdotool openexr openimageio-tools python3-openvdb python3-numpy)
 
 is_installed() { [[ $(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null) == installed ]]; }
 

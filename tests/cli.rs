@@ -366,3 +366,28 @@ fn clouds_go_out_as_voxels_and_come_back() {
     refuses(&folder, &["grid", "fair_weather", "--set", "weather.coverage=0", "-o", "c.json"], 2, &["coverage is 0"]);
     refuses(&folder, &["grid", "fair_weather", "--voxels", "8", "-o", "nowhere/c.json"], 4, &["no folder"]);
 }
+
+#[test]
+fn clouds_go_out_as_openvdb_and_the_library_reads_the_same() {
+    let folder = folder();
+    let grid = |output: &str, more: &[&str]| {
+        // Sides that are no multiples of a leaf, and a box that is no cube.
+        let args = ["grid", "fair_weather", "-o", output, "--voxels", "52", "--set", "domain.box_width_m=9000"];
+        renders(&folder, &[&args[..], more].concat());
+    };
+    grid("plain.json", &[]);
+    for (name, up, depth, tolerance) in
+        [("z.vdb", "z", "float", "0"), ("y.vdb", "y", "float", "0"), ("half.vdb", "z", "half", "0.0005")]
+    {
+        grid(name, &["--up", up, "--depth", depth]);
+        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/vdb.py");
+        // Debian's package is for Debian's Python.
+        let output = command("/usr/bin/python3", &folder).args([script, name, "plain.json", up, tolerance]).output();
+        let output = output.expect("Debian has Python");
+        assert!(output.status.success(), "{name}: {}", stderr(&output));
+        assert!(stdout(&output).contains("the same"), "{name}: {}", stdout(&output));
+    }
+    let size = |name: &str| std::fs::metadata(folder.path().join(name)).expect("written").len();
+    assert!(size("half.vdb") < size("z.vdb") && size("z.vdb") < size("plain.npy"), "sparse and zipped");
+    refuses(&folder, &["grid", "thesis", "-o", "x.obj"], 2, &["neither in .json nor in .vdb"]);
+}

@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 
 use super::error::Usage;
 use super::{Device, Edits, args, print};
-use crate::files::{self, VoxelFormat, save_grid};
+use crate::files::{self, VoxelFormat, save_grid, save_vdb};
 use crate::gpu::Gpu;
+use crate::images::voxels::{UpAxis, VdbOptions};
 use crate::plan::{Effect, FramePlan};
 use crate::render::Renderer;
 use crate::scene::{DomainKind, Frame, Output, Quality, edit};
@@ -18,7 +19,7 @@ pub(super) struct GridArgs {
     /// A preset (.ron), an exported .exr or .png, a voxel grid (.json), or the name of a built-in sky. Its box is baked, or
     /// the clouds of its shell where the box stands.
     scene: PathBuf,
-    /// Description to write, .json; the voxels are written beside it.
+    /// A description to write, .json, with the voxels beside it; or an `OpenVDB` file, .vdb.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Voxels from west to east and from north to south; half as many upwards.
@@ -27,6 +28,12 @@ pub(super) struct GridArgs {
     /// Format of the voxels.
     #[arg(long, default_value = "npy")]
     format: Format,
+    /// Which way is up in a .vdb: z as in Blender, y as in Houdini and Maya.
+    #[arg(long, default_value = "z")]
+    up: Up,
+    /// Bits of a value in a .vdb.
+    #[arg(long, default_value = "half")]
+    depth: Depth,
     /// Seconds since the scene began.
     #[arg(long, value_parser = args::finite, default_value = "0", value_name = "SECONDS", allow_negative_numbers = true)]
     time: f64,
@@ -46,13 +53,32 @@ enum Format {
     Both,
 }
 
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Up {
+    /// x east, y north, z up.
+    Z,
+    /// x east, y up, z south.
+    Y,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Depth {
+    /// 16 bits.
+    Half,
+    /// 32 bits.
+    Float,
+}
+
 /// The size of picture for which the camera is described.
 const PICTURE: [u32; 2] = [1920, 1080];
 
 pub(super) fn run(args: &GridArgs) -> Result<()> {
-    if args.output.extension().is_none_or(|extension| extension != "json") {
-        return Err(Usage(format!("-o {} does not end in .json", args.output.display())).into());
-    }
+    let extension = args.output.extension().and_then(|extension| extension.to_str());
+    let is_vdb = match extension {
+        Some("json") => false,
+        Some("vdb") => true,
+        _ => return Err(Usage(format!("-o {} ends neither in .json nor in .vdb", args.output.display())).into()),
+    };
     let mut preset = files::open(&args.scene)?.preset;
     let mut quality = Quality { grid_voxels: args.voxels, ..Quality::default() };
     preset.scene.domain.kind = DomainKind::Box;
@@ -69,7 +95,16 @@ pub(super) fn run(args: &GridArgs) -> Result<()> {
         Format::Vol => VoxelFormat::Vol,
         Format::Both => VoxelFormat::Both,
     };
-    let written = save_grid(&args.output, (&grid, bounds), &preset, (format, PICTURE))?;
+    let written = if is_vdb {
+        let up = match args.up {
+            Up::Z => UpAxis::Z,
+            Up::Y => UpAxis::Y,
+        };
+        save_vdb(&args.output, (&grid, bounds), VdbOptions { up, is_half: args.depth == Depth::Half })?;
+        vec![args.output.clone()]
+    } else {
+        save_grid(&args.output, (&grid, bounds), &preset, (format, PICTURE))?
+    };
     let [x, y, z] = grid.size();
     let filled = grid.values().iter().filter(|value| **value > 0.0).count() as f64 / grid.values().len() as f64;
     let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::{FileError, folder_of, read_text, write_text};
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
-use crate::images::voxels::{Bounds, VoxelGrid};
+use crate::images::voxels::{Bounds, VdbOptions, VoxelGrid};
 use crate::scene::param::{Colour, FileName};
 use crate::scene::{
     CloudLayer, DensityModel, DomainKind, FieldOfViewAxis, Phase, PhaseKind, PlainLight, Preset, Scene, edit,
@@ -351,6 +351,16 @@ pub fn save_grid(
     let text = serde_json::to_string_pretty(&description).unwrap_or_else(|error| unreachable!("plain data: {error}"));
     write_text(path, &format!("{text}\n"))?;
     Ok(files)
+}
+
+/// Writes voxels in a box of the world as an `OpenVDB` fog volume.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn save_vdb(path: &Path, (grid, bounds): (&VoxelGrid, Bounds), options: VdbOptions) -> Result<(), FileError> {
+    Ok(write_atomically(path, |mut writer| {
+        grid.write_vdb(bounds, options, &mut writer).map_err(|error| ExportError::writing(path, error))
+    })?)
 }
 
 /// What a scene says of a box of its clouds: the layer that comes first speaks for all.

@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-pub use grid::{VoxelFormat, save_grid};
+pub use grid::{VoxelFormat, save_grid, save_vdb};
 pub use open::{Origin, Sky, open};
 pub use picture::{About, save_exr, save_png};
 pub use programs::KeptPrograms;

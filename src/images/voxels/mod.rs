@@ -1,11 +1,14 @@
 //! Voxel grids as other programs write them: `NumPy`'s `.npy` and Mitsuba's `.vol`. `docs/grid.md` states both exactly.
 
 mod npy;
+mod vdb;
 mod vol;
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
+
+pub use vdb::{UpAxis, VdbOptions};
 
 /// Longest side of a grid, in voxels; every device holds textures that large.
 pub const MAX_SIDE: u32 = 2048;
