@@ -391,3 +391,35 @@ fn clouds_go_out_as_openvdb_and_the_library_reads_the_same() {
     assert!(size("half.vdb") < size("z.vdb") && size("z.vdb") < size("plain.npy"), "sparse and zipped");
     refuses(&folder, &["grid", "thesis", "-o", "x.obj"], 2, &["neither in .json nor in .vdb"]);
 }
+
+#[test]
+fn layers_in_a_file_sum_to_its_picture() {
+    let folder = folder();
+    renders(&folder, &render("broken_sunset", "sky.exr", &["--layers"]));
+    let image = exr::prelude::read_first_flat_layer_from_file(folder.path().join("sky.exr")).expect("an EXR");
+    let channels = image.layer_data.channel_data.list;
+    let values = |name: &str| {
+        let channel = channels.iter().find(|channel| channel.name.to_string() == name);
+        let channel = channel.unwrap_or_else(|| panic!("{name} is missing"));
+        channel.sample_data.values_as_f32().collect::<Vec<f32>>()
+    };
+    for channel in ["R", "G", "B"] {
+        let whole = values(channel);
+        let suffix = format!(".{channel}");
+        let parts: Vec<Vec<f32>> = channels
+            .iter()
+            .map(|part| part.name.to_string())
+            .filter(|name| name.ends_with(&suffix))
+            .map(|name| values(&name))
+            .collect();
+        assert!(parts.len() >= 5, "{} layers", parts.len());
+        for (index, pixel) in whole.iter().enumerate() {
+            let sum: f32 = parts.iter().map(|part| part[index]).sum();
+            let room: f32 = parts.iter().map(|part| part[index].abs() / 1024.0 + 1e-6).sum();
+            assert!((sum - pixel).abs() <= room, "pixel {index}: {sum}, not {pixel}, within half floats");
+        }
+    }
+    assert!(values("transmittance.A").iter().all(|value| (0.0..=1.0).contains(value)));
+    assert!(values("distance.X").iter().any(|value| *value > 1000.0), "clouds are far");
+    refuses(&folder, &render("thesis", "x.png", &["--layers"]), 2, &["--layers needs an .exr"]);
+}

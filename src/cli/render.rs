@@ -15,7 +15,7 @@ use super::interrupt::{self, Interrupted};
 use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
-use crate::files::{self, About, KeptPrograms, save_exr, save_png};
+use crate::files::{self, About, KeptPrograms, save_exr, save_layers, save_png};
 use crate::gpu::Gpu;
 use crate::images::pattern::{FramePattern, parse_frame_range};
 use crate::plan::Forced;
@@ -60,6 +60,10 @@ pub(super) struct RenderArgs {
     /// Only clouds, with their opacity as alpha (EXR).
     #[arg(long)]
     clouds_only: bool,
+    /// Write layers of light into the .exr beside the picture, which is their sum: direct, multiple, ambient, bounce, air,
+    /// shafts, disc, backdrop; and the clouds' transmittance and distance.
+    #[arg(long, conflicts_with = "clouds_only")]
+    layers: bool,
     /// Bits per sample of an EXR; by default half, or float where half does not reach.
     #[arg(long)]
     depth: Option<DepthArg>,
@@ -129,6 +133,7 @@ impl RenderArgs {
             quality: None,
             integration: Integration::default(),
             clouds_only: false,
+            layers: false,
             depth: None,
             compression: CompressionArg::Zip,
             watch: false,
@@ -179,6 +184,9 @@ impl Job {
         if args.clouds_only && format == Format::Png {
             return Err(Usage("--clouds-only needs an .exr, which keeps light and opacity apart".to_owned()).into());
         }
+        if args.layers && format == Format::Png {
+            return Err(Usage("--layers needs an .exr, which holds more than one picture".to_owned()).into());
+        }
         if args.depth.is_some() && format == Format::Png {
             return Err(Usage("--depth is for .exr; a PNG has 8 bits".to_owned()).into());
         }
@@ -206,6 +214,9 @@ impl Job {
         };
         let is_final = args.quality.as_deref().is_some_and(|quality| quality.eq_ignore_ascii_case("final"));
         let goal = args.integration.goal(is_final)?;
+        if args.layers && goal.is_some() {
+            return Err(Usage("--layers is for the realtime march; choose --quality high".to_owned()).into());
+        }
         let forced = args::forced(&args.force)?;
         Ok(Self { preset, quality, format, output, goal, forced, pictures: pictures(args)? })
     }
@@ -297,6 +308,11 @@ fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, t
     let frame = Frame { scene: &preset.scene, quality, size: args.size, time_secs, output: *output };
     let about = About { preset, quality, time_secs };
     let failed = || format!("{} could not be rendered", path.display());
+    if args.layers {
+        let layers = renderer.layers(&frame).with_context(failed)?;
+        save_layers(path, &layers, &about, args.exr_options())?;
+        return Ok(());
+    }
     let (display, linear) = match job.goal {
         None => {
             let still = renderer.still(&frame).with_context(failed)?;

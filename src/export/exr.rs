@@ -149,6 +149,15 @@ pub struct ExrOptions {
     pub compression: ExrCompression,
 }
 
+/// Channels beside those of the picture itself.
+#[derive(Clone, Debug, Default)]
+pub struct ExrLayers {
+    /// Layers of light: `direct` is written as `direct.R`, `direct.G`, `direct.B`, with the depth of the picture.
+    pub lights: Vec<(String, Vec<[f32; 3]>)>,
+    /// Data, always of 32 bits; their names end in `.A` or `.X`, which no lossy codec takes for colours.
+    pub data: Vec<(String, Vec<f32>)>,
+}
+
 /// Writes an EXR atomically and returns the depth that was chosen, [`ExrDepth::Half`] or [`ExrDepth::Float`].
 ///
 /// # Errors
@@ -160,11 +169,25 @@ pub fn write_exr(
     metadata: &ExrMetadata,
     options: ExrOptions,
 ) -> Result<ExrDepth, ExportError> {
+    write_exr_with_layers(path, (image, &ExrLayers::default()), metadata, options)
+}
+
+/// The same with layers beside the picture.
+///
+/// # Errors
+/// As [`write_exr`].
+pub fn write_exr_with_layers(
+    path: &Path,
+    (image, layers): (&FloatImage, &ExrLayers),
+    metadata: &ExrMetadata,
+    options: ExrOptions,
+) -> Result<ExrDepth, ExportError> {
     check_sizes(path, image)?;
     check_finite(path, image)?;
+    check_layers(path, image, layers)?;
     let depth = resolve_depth(path, image, options.depth)?;
     let layer = exrs::Layer {
-        channel_data: channels(image, depth),
+        channel_data: channels(image, layers, depth),
         attributes: layer_attributes(path, image, metadata)?,
         size: exrs::Vec2(image.width as usize, image.height as usize),
         encoding: exrs::Encoding {
@@ -217,6 +240,19 @@ fn check_finite(path: &Path, image: &FloatImage) -> Result<(), ExportError> {
     }
 }
 
+fn check_layers(path: &Path, image: &FloatImage, layers: &ExrLayers) -> Result<(), ExportError> {
+    let count = image.rgba.len();
+    let lights = layers.lights.iter().map(|(name, light)| (name, light.len(), light.as_flattened()));
+    let data = layers.data.iter().map(|(name, data)| (name, data.len(), data.as_slice()));
+    for (name, length, values) in lights.chain(data) {
+        if length != count || values.iter().any(|value| !value.is_finite()) {
+            let reason = format!("the layer {name} has {length} of {count} pixels, or values that are not finite");
+            return Err(ExportError::BadImage { path: path.to_owned(), reason });
+        }
+    }
+    Ok(())
+}
+
 fn resolve_depth(path: &Path, image: &FloatImage, depth: ExrDepth) -> Result<ExrDepth, ExportError> {
     let too_large = |pixel: &[f32; 4]| pixel.iter().copied().find(|value| value.abs() > HALF_MAX);
     let first = image.rgba.iter().enumerate().find_map(|(index, pixel)| Some((index, too_large(pixel)?)));
@@ -230,19 +266,28 @@ fn resolve_depth(path: &Path, image: &FloatImage, depth: ExrDepth) -> Result<Exr
     }
 }
 
-fn channels(image: &FloatImage, depth: ExrDepth) -> exrs::AnyChannels<exrs::FlatSamples> {
-    let colour = |name: &str, index: usize| {
-        let values = image.rgba.iter().map(|pixel| pixel[index]);
+fn channels(image: &FloatImage, layers: &ExrLayers, depth: ExrDepth) -> exrs::AnyChannels<exrs::FlatSamples> {
+    let colour = |name: &str, values: &mut dyn Iterator<Item = f32>| {
         let samples = match depth {
             ExrDepth::Half => exrs::FlatSamples::F16(values.map(f16::from_f32).collect()),
             _ => exrs::FlatSamples::F32(values.collect()),
         };
         exrs::AnyChannel::new(name, samples)
     };
-    let mut list = exrs::SmallVec::from_vec(vec![colour("R", 0), colour("G", 1), colour("B", 2), colour("A", 3)]);
+    let own = ["R", "G", "B", "A"].iter().enumerate();
+    let own = own.map(|(index, name)| colour(name, &mut image.rgba.iter().map(|pixel| pixel[index])));
+    let mut list: exrs::SmallVec<_> = own.collect();
     if let Some(depth) = &image.depth {
         // Half would place a cloud at 20 km on steps of 16 m, hence always 32 bits.
         list.push(exrs::AnyChannel::new("Z", exrs::FlatSamples::F32(depth.clone())));
+    }
+    for (name, light) in &layers.lights {
+        for (index, channel) in ["R", "G", "B"].iter().enumerate() {
+            list.push(colour(&format!("{name}.{channel}"), &mut light.iter().map(|pixel| pixel[index])));
+        }
+    }
+    for (name, values) in &layers.data {
+        list.push(exrs::AnyChannel::new(name.as_str(), exrs::FlatSamples::F32(values.clone())));
     }
     exrs::AnyChannels::sort(list)
 }

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 pub use grid::{VoxelFormat, save_grid, save_vdb};
 pub use open::{Origin, Sky, open};
-pub use picture::{About, save_exr, save_png};
+pub use picture::{About, save_exr, save_layers, save_png};
 pub use programs::KeptPrograms;
 
 use crate::export::ExportError;

@@ -5,11 +5,11 @@ use std::path::Path;
 use glam::{Mat4, Vec3, Vec4};
 
 use super::FileError;
-use crate::export::exr::{EmbeddedFile, ExrDepth, ExrMetadata, ExrOptions, PRESET, QUALITY, write_exr};
-use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME};
+use crate::export::exr::{EmbeddedFile, ExrDepth, ExrLayers, ExrMetadata, ExrOptions, PRESET, QUALITY};
+use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME, write_exr_with_layers};
 use crate::export::png::{PngPixels, write_png};
 use crate::images::FloatImage;
-use crate::render::LinearImage;
+use crate::render::{Layers, LinearImage};
 use crate::scene::edit::files_of;
 use crate::scene::{Camera, PRESET_VERSION, Preset, Projection, Quality, quality_to_ron};
 
@@ -55,6 +55,35 @@ pub fn save_exr(
     about: &About<'_>,
     options: ExrOptions,
 ) -> Result<ExrDepth, FileError> {
+    save_with(path, (image, &ExrLayers::default()), about, options)
+}
+
+/// The same with the layers of light, the clouds' transmittance and their distance along each ray.
+///
+/// # Errors
+/// As [`save_exr`].
+pub fn save_layers(
+    path: &Path,
+    layers: &Layers,
+    about: &About<'_>,
+    options: ExrOptions,
+) -> Result<ExrDepth, FileError> {
+    let extra = ExrLayers {
+        lights: layers.lights.iter().map(|(name, light)| ((*name).to_owned(), light.clone())).collect(),
+        data: vec![
+            ("transmittance.A".to_owned(), layers.transmittance.clone()),
+            ("distance.X".to_owned(), layers.beauty.distance_m.clone()),
+        ],
+    };
+    save_with(path, (&layers.beauty, &extra), about, options)
+}
+
+fn save_with(
+    path: &Path,
+    (image, layers): (&LinearImage, &ExrLayers),
+    about: &About<'_>,
+    options: ExrOptions,
+) -> Result<ExrDepth, FileError> {
     let (preset, files) = portable(about.preset);
     let camera = matrices(&about.preset.scene.camera, image.size);
     let metadata = ExrMetadata {
@@ -71,7 +100,7 @@ pub fn save_exr(
     };
     let [width, height] = image.size;
     let image = FloatImage { width, height, rgba: image.rgba.clone(), depth: None, crop: None };
-    Ok(write_exr(path, &image, &metadata, options)?)
+    Ok(write_exr_with_layers(path, (&image, layers), &metadata, options)?)
 }
 
 /// The preset with map images named without their folders, and the images themselves.

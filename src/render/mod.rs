@@ -9,6 +9,7 @@ mod blue_noise;
 mod clearance;
 mod context;
 mod interactive;
+mod layers;
 mod output;
 pub mod pass;
 mod passes;
@@ -39,6 +40,7 @@ use uniforms::Eye;
 use voxels::Voxels;
 use weather::WeatherMap;
 
+pub use layers::Layers;
 pub use output::{Counts, LinearImage};
 pub use still::Still;
 

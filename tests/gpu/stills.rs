@@ -117,3 +117,49 @@ fn converged_pictures_have_their_samples_too() {
     let ratio = mean(&several) / mean(&one);
     assert!((ratio - 1.0).abs() < 0.02, "of the same sky: {ratio}");
 }
+
+#[test]
+fn layers_sum_to_the_picture_and_follow_their_lights() {
+    let mut scene = Scene::default();
+    scene.sunshafts.strength = 0.8;
+    scene.camera.heading_deg = scene.sun.azimuth_deg;
+    scene.camera.pitch_deg = 30.0;
+    scene.camera.field_of_view_deg = 70.0;
+    let quality = Quality { octaves: 3, pixel_samples: 2, still_step: 1.0, ..quick() };
+    let mut renderer = renderer();
+    let mut layers_of = |scene: &Scene| {
+        let layers = renderer.layers(&frame(scene, &quality, [48, 27], Output::Linear)).expect("it can be rendered");
+        assert!(renderer.forced().is_empty(), "nothing stays forced");
+        layers
+    };
+    let whole = layers_of(&scene);
+    let names: Vec<&str> = whole.lights.iter().map(|(name, _)| *name).collect();
+    assert_eq!(names, ["shafts", "multiple", "direct", "bounce", "ambient", "air", "disc", "backdrop"]);
+    let greatest = whole.beauty.rgba.iter().flat_map(|pixel| &pixel[..3]).copied().fold(0.0, f32::max);
+    for (index, pixel) in whole.beauty.rgba.iter().enumerate() {
+        for channel in 0..3 {
+            let parts: Vec<f32> = whole.lights.iter().map(|(_, light)| light[index][channel]).collect();
+            let sum: f32 = parts.iter().sum();
+            assert!((sum - pixel[channel]).abs() <= 1e-6 * greatest, "{sum} for {} of {parts:?}", pixel[channel]);
+            assert!(parts.iter().all(|part| *part >= -1e-5 * greatest), "no light takes any away: {parts:?}");
+        }
+    }
+    let total = |layers: &nephoscope::render::Layers, wanted: &str| {
+        let light = layers.lights.iter().find(|(name, _)| *name == wanted).map(|(_, light)| light);
+        let sum: f32 = light.into_iter().flatten().flatten().sum();
+        f64::from(sum) * f64::from(layers.beauty.candela_per_unit)
+    };
+    // Twice the sunlight is twice the light of it, and the sky is the sun's as well; no ambient light is none.
+    let mut other = scene.clone();
+    other.sun.illuminance_klx *= 2.0;
+    let brighter = layers_of(&other);
+    for name in ["direct", "multiple"] {
+        let ratio = total(&brighter, name) / total(&whole, name);
+        assert!((ratio - 2.0).abs() < 0.01, "{name}: {ratio}");
+    }
+    other.scattering.ambient = 0.0;
+    let darker = layers_of(&other);
+    assert_eq!((total(&darker, "ambient"), total(&darker, "bounce")), (0.0, 0.0));
+    let ratio = total(&darker, "direct") / total(&brighter, "direct");
+    assert!((ratio - 1.0).abs() < 1e-4, "the sun does not care: {ratio}");
+}
