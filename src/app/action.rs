@@ -89,6 +89,10 @@ pub enum Request {
     Browse(Browse),
     /// Write what the window shows as PNG.
     Screenshot,
+    /// Put what the window shows into the clipboard.
+    CopyPicture,
+    /// Put what this machine is into the clipboard.
+    CopySystem,
     /// Keep the sky with the picture that the window shows.
     Snapshot,
     /// Render a still and write it.
@@ -286,6 +290,8 @@ impl Request {
             Self::Answer(_) => "answer",
             Self::Browse(_) => "browse",
             Self::Screenshot => "screenshot",
+            Self::CopyPicture => "copy the picture",
+            Self::CopySystem => "copy what the machine is",
             Self::Snapshot => "snapshot",
             Self::Export(_) => "export",
             Self::Recover(_) => "recover",

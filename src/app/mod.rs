@@ -3,8 +3,10 @@
 //! Panels return [`action::Action`]s; [`Session`] carries them out on the document and returns what concerns windows
 //! and threads; `window::App` does that, and keeps the picture and the panels going beside each other.
 
+pub mod about;
 pub mod action;
 pub mod camera_control;
+mod crash;
 pub mod document;
 mod egui_glue;
 mod hands;

@@ -189,6 +189,8 @@ impl Session {
             | Request::Screenshot
             | Request::Snapshot
             | Request::KeepPicture(_)
+            | Request::CopyPicture
+            | Request::CopySystem
             | Request::Export(_)
             | Request::Lab(_)
             | Request::ToggleFullScreen => Some(request),

@@ -19,7 +19,7 @@ use super::recovery::Recovery;
 use super::surface::WindowSurface;
 use super::viewport::{Step, Viewport};
 use super::worker::{Event, Message, StillJob, Worker};
-use super::{Action, NoDisplay, Session};
+use super::{Action, NoDisplay, Session, about, crash};
 use crate::files::KeptPrograms;
 use crate::gpu::{AdapterChoice, Gpu};
 use crate::scene::{Quality, UpdateFraction};
@@ -39,6 +39,7 @@ const HOPELESS: Duration = Duration::from_secs(5);
 pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()> {
     let event_loop = EventLoop::<Event>::with_user_event().build();
     let event_loop = event_loop.map_err(|error| NoDisplay(error.to_string()))?;
+    crash::watch(&session.folders.state);
     let (recovery, left) = Recovery::open(&session.folders.state);
     let mut app = App {
         lab: Lab::default(),
@@ -51,6 +52,9 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         lose_device_after: lose_device_after(),
         failure: None,
     };
+    if let Some(report) = crash::unseen(&app.session.folders.state) {
+        app.session.ui.toasts.error(format!("The last run ended by a crash; what is known of it is in {}", report.display()));
+    }
     match left {
         Some(Ok(preset)) => app.session.offer_recovery(preset),
         Some(Err(said)) => app.session.ui.toasts.error(said),
@@ -159,6 +163,7 @@ impl ApplicationHandler<Event> for App {
         match Live::open(event_loop, self.proxy.clone(), &self.adapter) {
             Ok(live) => {
                 self.session.apply_preferences(live.egui.context());
+                crash::set_system(about::this(Some(&live.gpu)));
                 self.live = Some(live);
             }
             Err(error) => self.fail(event_loop, error),
@@ -380,6 +385,13 @@ impl App {
             Request::Browse(purpose) => self.browse(purpose),
             Request::Screenshot => self.screenshot(),
             Request::Snapshot => self.take_snapshot(),
+            Request::CopyPicture => self.copy_picture(),
+            Request::CopySystem => {
+                if let Some(live) = &self.live {
+                    live.egui.context().copy_text(about::this(Some(&live.gpu)));
+                    self.session.ui.toasts.info("What this machine is lies in the clipboard");
+                }
+            }
             Request::KeepPicture(preset) => self.keep_picture(&preset),
             Request::Export(export) => {
                 let Some(live) = &self.live else { return };

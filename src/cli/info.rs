@@ -5,6 +5,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Device, print};
+use crate::app::about;
 use crate::gpu::{AdapterChoice, Gpu, TimingSource};
 use crate::scene::{PRESET_VERSION, reference_docs};
 
@@ -34,33 +35,7 @@ pub(super) fn run(args: &InfoArgs) -> Result<()> {
         }
         Err(error) => return Err(error.into()),
     };
-    if args.json { print(&format!("{}\n", as_json(gpu.as_ref()))) } else { print(&as_text(gpu.as_ref())) }
-}
-
-fn system() -> String {
-    format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)
-}
-
-fn as_text(gpu: Option<&Gpu>) -> String {
-    let mut text = format!("nephoscope {}\n", env!("CARGO_PKG_VERSION"));
-    text.push_str(&format!("preset format  {PRESET_VERSION}\nsystem         {}\n", system()));
-    text.push_str(&format!("processors     {}\n", processors()));
-    match gpu {
-        Some(gpu) => {
-            text.push_str(&format!("in use         {}\n", gpu.description()));
-            text.push_str(&format!("timing         {}\n", TimingSource::of(gpu).label()));
-            text.push_str(&format!("largest image  {} px\n", gpu.device.limits().max_texture_dimension_2d));
-        }
-        None => text.push_str("in use         no adapter\n"),
-    }
-    for adapter in Gpu::adapters() {
-        text.push_str(&format!("adapter        {} ({:?}, {:?})\n", adapter.name, adapter.device_type, adapter.backend));
-    }
-    text
-}
-
-fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, std::num::NonZero::get)
+    if args.json { print(&format!("{}\n", as_json(gpu.as_ref()))) } else { print(&about::this(gpu.as_ref())) }
 }
 
 fn as_json(gpu: Option<&Gpu>) -> Value {
@@ -75,8 +50,8 @@ fn as_json(gpu: Option<&Gpu>) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "preset_version": PRESET_VERSION,
-        "system": system(),
-        "processors": processors(),
+        "system": about::system(),
+        "processors": about::processors(),
         "in_use": gpu.map(Gpu::description),
         "timing": gpu.map(|gpu| TimingSource::of(gpu).label()),
         "adapters": Gpu::adapters().into_iter().map(adapter).collect::<Vec<_>>(),

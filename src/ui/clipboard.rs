@@ -85,8 +85,10 @@ pub(super) fn take(ui: &Ui, copied: &mut String, (scene, quality): (&Scene, &Qua
         });
         (input.events.contains(&Event::Copy), pasted)
     });
-    if let (true, Some(key)) = (is_copied, &pointed) {
-        copy(copied, key);
+    match &pointed {
+        Some(key) if is_copied => copy(copied, key),
+        None if is_copied => actions.push(Action::Ask(Request::CopyPicture)),
+        _ => {}
     }
     if let Some(text) = pasted {
         actions.push(Action::Ask(Request::Paste { key: pointed, text }));

@@ -35,6 +35,12 @@ pub enum Command {
     Vary,
     /// The preset to the clipboard.
     CopySky,
+    /// The picture to the clipboard.
+    CopyPicture,
+    /// What the machine is to the clipboard.
+    CopySystem,
+    /// Commands by name.
+    Palette,
     /// Camera before the last flight.
     ViewBack,
     /// Camera after it.
@@ -76,7 +82,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 31] = [
+const TABLE: [(Command, Modifiers, Key, &str); 34] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -91,6 +97,9 @@ const TABLE: [(Command, Modifiers, Key, &str); 31] = [
     (Command::Snapshot, Modifiers::NONE, Key::F7, "Take a snapshot"),
     (Command::Vary, Modifiers::COMMAND, Key::R, "Vary the sky"),
     (Command::CopySky, CTRL_SHIFT, Key::C, "Copy the sky as text"),
+    (Command::CopyPicture, CTRL_SHIFT, Key::I, "Copy the picture"),
+    (Command::CopySystem, CTRL_SHIFT, Key::F1, "Copy what this machine is"),
+    (Command::Palette, Modifiers::COMMAND, Key::P, "Command palette"),
     (Command::ViewBack, Modifiers::ALT, Key::ArrowLeft, "Camera back"),
     (Command::ViewForth, Modifiers::ALT, Key::ArrowRight, "Camera forth"),
     (Command::PlayPause, Modifiers::NONE, Key::Space, "Play or pause"),
@@ -112,7 +121,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 31] = [
 ];
 
 /// What mice and held keys do, for the sheet.
-pub(super) const GESTURES: [(&str, &str); 14] = [
+pub(super) const GESTURES: [(&str, &str); 15] = [
     ("Right mouse held", "Look around"),
     ("… with W A S D", "Fly forwards, left, back, right"),
     ("… with Q E", "Fly down, up"),
@@ -125,6 +134,7 @@ pub(super) const GESTURES: [(&str, &str); 14] = [
     ("Ctrl+F", "Filter parameters"),
     ("Shift, Ctrl while dragging", "Finer; from one round number to the next"),
     ("Ctrl+C, Ctrl+V on a name", "Copy, paste a parameter or a section"),
+    ("… elsewhere", "Copy the picture, paste a sky"),
     ("Backspace on a name", "Reset a parameter"),
     ("Ctrl and + − 0", "Size of the panels"),
 ];
@@ -174,6 +184,9 @@ impl Command {
                 ui.ctx().copy_text(document.preset().to_ron());
                 state.toasts.info("The sky is in the clipboard; Ctrl+V over the picture opens one");
             }
+            Self::CopyPicture => ask(Request::CopyPicture),
+            Self::CopySystem => ask(Request::CopySystem),
+            Self::Palette => state.palette.is_open = !state.palette.is_open,
             Self::ViewBack => actions.push(Action::ViewBack),
             Self::ViewForth => actions.push(Action::ViewForth),
             Self::PlayPause => actions.push(Action::Play(!document.is_playing())),
@@ -254,7 +267,7 @@ impl Command {
 /// Runs the commands whose keys were pressed since the last frame.
 pub(super) fn take(ui: &mut Ui, state: &mut State, document: &Document) -> Vec<Action> {
     let mut actions = Vec::new();
-    let asking = state.dialog.is_some() && state.dialog != Some(Dialog::Shortcuts);
+    let asking = state.palette.is_open || state.dialog.is_some() && state.dialog != Some(Dialog::Shortcuts);
     let typing = ui.ctx().egui_wants_keyboard_input();
     for command in Command::all() {
         let free = command == Command::HideAll && state.hide_all;

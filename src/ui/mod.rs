@@ -6,6 +6,7 @@ mod dialogs;
 mod history;
 mod lab;
 mod overlay;
+mod palette;
 mod panel;
 mod presets;
 mod probe;
@@ -21,6 +22,7 @@ pub use command::Command;
 pub use dialogs::{Dialog, ExportForm};
 pub use lab::{LabState, LabView, Measured, Phase};
 pub use overlay::{PassLine, Readout};
+pub use palette::PaletteState;
 pub use panel::PanelState;
 pub use presets::{Entry, Library, Morph, Thumbnail};
 pub use probe::set_file_in;
@@ -53,6 +55,8 @@ pub struct State {
     pub show_overlay: bool,
     /// Skies to go back to and to compare with.
     pub snapshots: SnapshotState,
+    /// Commands by name.
+    pub palette: PaletteState,
     /// Random changes.
     pub vary: VaryState,
     /// Whether the list of steps is there.
@@ -85,6 +89,7 @@ impl Default for State {
             show_presets: None,
             show_overlay: false,
             snapshots: SnapshotState::default(),
+            palette: PaletteState::default(),
             vary: VaryState::default(),
             show_history: false,
             hide_all: false,
@@ -188,6 +193,7 @@ pub fn show(
     if state.show_history && !state.hide_all {
         history::show(ui.ctx(), area, document, (&mut state.show_history, &mut actions));
     }
+    palette::show(ui, state, document, &mut actions);
     dialogs::show(ui.ctx(), state, document, &mut actions);
     state.toasts.show(ui.ctx(), area);
     actions

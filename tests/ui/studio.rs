@@ -223,3 +223,29 @@ fn a_dropped_picture_becomes_the_weather_map() {
     editor.harness.run();
     assert!(editor.harness.state().ui.dialog.is_some(), "unsaved changes are asked about");
 }
+
+#[test]
+fn the_palette_finds_commands_presets_and_parameters() {
+    let mut editor = Editor::new();
+    let search = |editor: &mut Editor, text: &str| {
+        editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::P);
+        editor.harness.run();
+        editor.harness.event(egui::Event::Text(text.to_owned()));
+        editor.harness.run();
+    };
+    search(&mut editor, "timing over");
+    editor.press(egui::Key::Enter);
+    assert!(editor.harness.state().ui.show_overlay, "a command");
+    search(&mut editor, "open stormy");
+    editor.press(egui::Key::Enter);
+    assert_eq!(editor.document().name(), "Stormy", "a sky");
+    search(&mut editor, "azimuth");
+    editor.press(egui::Key::ArrowDown);
+    editor.press(egui::Key::Enter);
+    assert_eq!(editor.harness.state().ui.panel.filter, "moon.azimuth_deg", "a parameter");
+    search(&mut editor, "no such thing at all");
+    editor.press(egui::Key::Enter);
+    assert!(editor.has_label("Nothing is called that"));
+    editor.press(egui::Key::Escape);
+    assert!(!editor.harness.state().ui.palette.is_open);
+}

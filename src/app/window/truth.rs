@@ -111,6 +111,22 @@ impl App {
 }
 
 impl App {
+    /// Puts the picture into the clipboard as the window shows it.
+    pub(super) fn copy_picture(&mut self) {
+        let Some(live) = &self.live else { return };
+        match live.shown_rgba8(&self.session) {
+            Ok((_, pixels)) if pixels.is_empty() => {
+                self.session.ui.toasts.error("There is no picture to copy yet; wait for the first one");
+            }
+            Ok((size, pixels)) => {
+                let size = size.map(|side| side as usize);
+                live.egui.context().copy_image(egui::ColorImage::from_rgba_unmultiplied(size, &pixels));
+                self.session.ui.toasts.info("The picture is in the clipboard");
+            }
+            Err(error) => self.session.ui.toasts.error(error),
+        }
+    }
+
     /// Keeps what the window shows as the small picture of a preset.
     pub(super) fn keep_picture(&mut self, preset: &std::path::Path) {
         if let Some(live) = &self.live
