@@ -53,7 +53,10 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         failure: None,
     };
     if let Some(report) = crash::unseen(&app.session.folders.state) {
-        app.session.ui.toasts.error(format!("The last run ended by a crash; what is known of it is in {}", report.display()));
+        app.session
+            .ui
+            .toasts
+            .error(format!("The last run ended by a crash; what is known of it is in {}", report.display()));
     }
     match left {
         Some(Ok(preset)) => app.session.offer_recovery(preset),

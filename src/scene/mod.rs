@@ -29,6 +29,7 @@ pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts}
 pub use place::{Camera, Display, Domain, DomainKind, FieldOfViewAxis, Ground, Projection, ToneMap};
 pub use preset::{PRESET_VERSION, Preset, PresetError, quality_from_ron, quality_to_ron};
 pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
+pub use sun_position::{CITIES, Moment};
 pub use weather::{MapEdge, MapLayer, MapSource, Weather, Wind};
 
 use crate::params;

@@ -12,6 +12,7 @@ mod presets;
 mod probe;
 mod row;
 mod snapshots;
+mod sundial;
 mod toasts;
 mod top_bar;
 mod truth;

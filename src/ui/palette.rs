@@ -32,9 +32,10 @@ const MOST: usize = 60;
 fn choices(state: &State, document: &Document) -> Vec<(String, String, Choice)> {
     let search = state.palette.search.trim().to_lowercase();
     let commands = Command::all().map(|command| (command.title().to_owned(), String::new(), Choice::Command(command)));
-    let presets = state.library.builtin.iter().chain(&state.library.user).map(|entry| {
-        (format!("Open {}", entry.name), entry.description.clone(), Choice::Preset(entry.source.clone()))
-    });
+    let presets =
+        state.library.builtin.iter().chain(&state.library.user).map(|entry| {
+            (format!("Open {}", entry.name), entry.description.clone(), Choice::Preset(entry.source.clone()))
+        });
     let keys = edit::keys(&document.preset().scene).into_iter();
     let keys = keys.chain(edit::keys(document.quality()).into_iter().map(|mut entry| {
         entry.key.insert_str(0, "quality.");

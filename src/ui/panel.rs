@@ -34,6 +34,9 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: 
     egui::ScrollArea::vertical().id_salt("parameters").auto_shrink([false; 2]).show(ui, |ui| {
         quality_section(ui, filter, quality, &mut actions);
         let mut scene = scene.clone();
+        if text.is_empty() && !filter.modified {
+            sundial_section(ui, &mut scene, &mut actions);
+        }
         let mut rows = Rows::new(ui, filter, String::new());
         scene.visit(&mut rows);
         let (edit, browse, shown) = (rows.edit, rows.browse, rows.shown);
@@ -121,6 +124,17 @@ fn quality_section(ui: &mut Ui, filter: Filter<'_>, quality: &Quality, actions: 
     } else if let Some(key) = edit {
         let key = key.trim_start_matches("quality.").to_owned();
         actions.push(Action::EditQuality { key, quality: Box::new(edited) });
+    }
+}
+
+/// The sun on a dial, above all rows.
+fn sundial_section(ui: &mut Ui, scene: &mut Scene, actions: &mut Vec<Action>) {
+    let heading = Heading { title: "Sundial", doc: "The sun’s place by a drag, by the hour, or by a city." };
+    let mut changed = None;
+    let mut outer = Rows::new(ui, Filter::default(), String::new());
+    outer.section(heading, "sundial.section", None, &mut |ui, _| changed = super::sundial::show(ui, scene));
+    if let Some(key) = changed {
+        actions.push(Action::EditScene { key: key.to_owned(), scene: Box::new(scene.clone()) });
     }
 }
 

@@ -72,7 +72,9 @@ fn menus(
         ui.separator();
         theme_and_scale(ui);
     });
-    ui.menu_button("Help", |ui| entries(ui, (state, document), &[&[Command::Palette, Command::Shortcuts], &[Command::CopySystem]], &mut chosen));
+    ui.menu_button("Help", |ui| {
+        entries(ui, (state, document), &[&[Command::Palette, Command::Shortcuts], &[Command::CopySystem]], &mut chosen);
+    });
     if let Some(command) = chosen {
         command.run(ui, state, document, actions);
     }

@@ -249,3 +249,31 @@ fn the_palette_finds_commands_presets_and_parameters() {
     editor.press(egui::Key::Escape);
     assert!(!editor.harness.state().ui.palette.is_open);
 }
+
+#[test]
+fn the_sundial_turns_the_sun_and_knows_hours_and_cities() {
+    let mut editor = Editor::new();
+    editor.click("sundial.section");
+    let dial = editor.with_key("sundial").rect();
+    // Half way from the middle to the horizon in the east: 90° − ½ · 90°.
+    let at = dial.center() + egui::vec2((0.5 * dial.width() - 10.0) * 45.0 / 108.0, 0.0);
+    editor.harness.hover_at(at);
+    editor.harness.drag_at(at);
+    editor.harness.run();
+    editor.harness.drop_at(at);
+    editor.harness.run();
+    let sun = editor.scene().sun.clone();
+    assert!((sun.elevation_deg - 45.0).abs() < 1.0 && (sun.azimuth_deg - 90.0).abs() < 1.0, "{sun:?}");
+    editor.click_label("Sunset");
+    let sun = editor.scene().sun.clone();
+    assert!(sun.placement == nephoscope::scene::SunPlacement::Hour && sun.hour_h > 16.0, "{sun:?}");
+    assert!(editor.scene().towards_sun().y.abs() < 0.05, "on the horizon");
+    editor.click("sun.city");
+    editor.click_label("Auckland");
+    assert_eq!(editor.scene().sun.latitude_deg, -36.85);
+    editor.type_number("sun.latitude_deg", "80");
+    let sunset = by().predicate(|node| node.label().as_deref() == Some("Sunset") && node.is_disabled());
+    assert!(editor.harness.query(sunset).is_some(), "midsummer night");
+    editor.click_label("Now");
+    assert!((1..=366).contains(&editor.scene().sun.day));
+}
