@@ -97,6 +97,8 @@ pub enum Request {
     Snapshot,
     /// Render a still and write it.
     Export(Export),
+    /// Give up the still that is being rendered.
+    GiveUp,
     /// Take or refuse the document that a crash left behind.
     Recover(bool),
     /// Take one part of another sky.
@@ -223,6 +225,8 @@ pub enum Still {
     /// The whole picture as linear light, EXR.
     #[default]
     Exr,
+    /// The same with layers of light beside it, EXR.
+    LayersExr,
     /// The clouds alone with their opacity, EXR.
     CloudsExr,
     /// The picture as on the screen, PNG.
@@ -236,6 +240,8 @@ pub struct Export {
     pub still: Still,
     /// Width and height in pixels.
     pub size: [u32; 2],
+    /// Whether it shows all directions, rather than what the preset's camera does.
+    pub is_panorama: bool,
     /// The quality; `None` for that of the viewport.
     pub level: Option<QualityLevel>,
     /// Where it goes.
@@ -294,6 +300,7 @@ impl Request {
             Self::CopySystem => "copy what the machine is",
             Self::Snapshot => "snapshot",
             Self::Export(_) => "export",
+            Self::GiveUp => "give up",
             Self::Recover(_) => "recover",
             Self::TakeOver { .. } => "take over",
             Self::Morph(_) => "morph",

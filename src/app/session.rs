@@ -192,6 +192,7 @@ impl Session {
             | Request::CopyPicture
             | Request::CopySystem
             | Request::Export(_)
+            | Request::GiveUp
             | Request::Lab(_)
             | Request::ToggleFullScreen => Some(request),
         }

@@ -1,8 +1,10 @@
 //! The window and its event loop: who is woken when, and what is drawn then.
 
+mod still;
 mod truth;
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
@@ -22,8 +24,7 @@ use super::worker::{Event, Message, StillJob, Worker};
 use super::{Action, NoDisplay, Session, about, crash};
 use crate::files::KeptPrograms;
 use crate::gpu::{AdapterChoice, Gpu};
-use crate::scene::{Quality, UpdateFraction};
-use crate::ui::Readout;
+use crate::ui::{Busy, Readout};
 
 /// Shortest time between two frames of the panels; longer while a picture is being made, which needs the device too.
 const FASTEST_PANELS: Duration = Duration::from_millis(16);
@@ -50,6 +51,7 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         recovery,
         live: None,
         lose_device_after: lose_device_after(),
+        given_up: None,
         failure: None,
     };
     if let Some(report) = crash::unseen(&app.session.folders.state) {
@@ -79,6 +81,8 @@ struct App {
     live: Option<Live>,
     /// When the device is taken away, to try what then happens.
     lose_device_after: Option<Duration>,
+    /// Gives up the still that is being rendered.
+    given_up: Option<Arc<AtomicBool>>,
     /// Why the program ends.
     failure: Option<anyhow::Error>,
 }
@@ -396,21 +400,8 @@ impl App {
                 }
             }
             Request::KeepPicture(preset) => self.keep_picture(&preset),
-            Request::Export(export) => {
-                let Some(live) = &self.live else { return };
-                let document = &self.session.document;
-                let level = export.level.map_or_else(|| document.quality().clone(), Quality::level);
-                // A still has no pictures before it to take pixels from, and the size asked for is that of the file.
-                let quality = Quality { update: UpdateFraction::Full, resolution_scale: 1.0, ..level };
-                self.session.ui.busy = Some("Rendering a still…".to_owned());
-                self.worker.still(StillJob {
-                    gpu: live.gpu.clone(),
-                    preset: document.preset().clone(),
-                    quality,
-                    time_secs: document.time_secs(),
-                    export,
-                });
-            }
+            Request::Export(export) => self.render_still(export),
+            Request::GiveUp => self.give_up_still(),
             Request::Lab(wish) => self.measure(wish),
             Request::Recover(true) => self.recovery.keep(&self.session.document),
             Request::Recover(false) => self.recovery.clear(),
@@ -449,7 +440,10 @@ impl App {
     fn browse(&mut self, purpose: Browse) {
         let path = self.session.document.path().and_then(|path| path.parent());
         let start = path.unwrap_or(&self.session.folders.presets).to_owned();
-        self.session.ui.busy = Some("Waiting for the file dialog…".to_owned());
+        if self.given_up.is_none() {
+            let text = "Waiting for the file dialog…".to_owned();
+            self.session.ui.busy = Some(Busy { text, progress: None, can_stop: false });
+        }
         self.worker.browse(purpose, &start);
     }
 
@@ -470,6 +464,7 @@ impl App {
                     export: Export {
                         still: Still::Png,
                         size: image.0,
+                        is_panorama: false,
                         level: None,
                         path: self.session.folders.pictures.clone(),
                     },
@@ -483,8 +478,12 @@ impl App {
     /// Takes in what a thread found or did.
     fn report(&mut self, event_loop: &ActiveEventLoop, message: Message) {
         let session = &mut self.session;
-        session.ui.busy = None;
+        if !matches!(message, Message::Progress(..) | Message::Still(_)) && self.given_up.is_none() {
+            session.ui.busy = None;
+        }
         match message {
+            Message::Progress(share, begun) => self.hear_of_still(share, begun),
+            Message::Still(result) => self.finish_still(result),
             Message::Picked(purpose, path) => session.picked(&purpose, &path),
             Message::NotPicked => {}
             Message::NoFileDialog => session.ui.toasts.error(

@@ -2,6 +2,8 @@
 //! and reports back through the event loop.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use winit::event_loop::EventLoopProxy;
@@ -10,10 +12,10 @@ use super::action::{Browse, Export, Still};
 use super::lab::News;
 use super::truth::{CompareJob, Compared};
 use crate::export::exr::ExrOptions;
-use crate::files::{About, save_exr, save_png};
+use crate::files::{About, save_exr, save_layers, save_png};
 use crate::gpu::Gpu;
 use crate::render::Renderer;
-use crate::scene::{Frame, Output, Preset, Quality};
+use crate::scene::{Frame, Output, Preset, Projection, Quality};
 
 /// What reaches the event loop from outside the window.
 #[derive(Debug)]
@@ -43,6 +45,10 @@ pub(super) enum Message {
     NotPicked,
     /// There seems to be no file dialog on this system.
     NoFileDialog,
+    /// How much of a picture is done, 0 to 1, and since when it is worked on.
+    Progress(f32, Instant),
+    /// A still is finished: it was written, or given up, or why it could not be rendered.
+    Still(Result<Option<PathBuf>, String>),
     /// A picture was written.
     Written(PathBuf),
     /// A picture could not be rendered or written.
@@ -137,12 +143,20 @@ impl Worker {
         });
     }
 
-    /// Renders a still and writes it.
-    pub(super) fn still(&self, job: StillJob) {
-        self.spawn("still", move || match still(&job) {
-            Ok(()) => Message::Written(job.export.path),
-            Err(error) => Message::Failed(format!("{error:#}")),
+    /// Renders a still and writes it. Setting what is returned gives it up.
+    pub(super) fn still(&self, job: StillJob) -> Arc<AtomicBool> {
+        let given_up = Arc::new(AtomicBool::new(false));
+        let (asked, proxy, begun) = (Arc::clone(&given_up), self.proxy.clone(), Instant::now());
+        self.spawn("still", move || {
+            let mut proceed = |share| {
+                // As above: whoever does not wait has closed the window.
+                let is_heard = proxy.send_event(Event::Worker(Message::Progress(share, begun))).is_ok();
+                is_heard && !asked.load(Ordering::Relaxed)
+            };
+            let is_written = still(&job, &mut proceed).map_err(|error| format!("{error:#}"));
+            Message::Still(is_written.map(|is_written| is_written.then_some(job.export.path)))
         });
+        given_up
     }
 }
 
@@ -165,28 +179,32 @@ fn free_name(folder: &Path) -> PathBuf {
     (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(10_000))
 }
 
-/// A renderer of its own on the same device, so that the window's keeps its history and its picture.
-fn still(job: &StillJob) -> anyhow::Result<()> {
+/// A renderer of its own on the same device, so that the window's keeps its history and its picture. Returns whether the
+/// picture was written, rather than given up.
+fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result<bool> {
     let mut renderer = Renderer::new(&job.gpu)?;
     let output = match job.export.still {
-        Still::Exr => Output::Linear,
+        Still::Exr | Still::LayersExr => Output::Linear,
         Still::CloudsExr => Output::CloudsAlone,
         Still::Png => Output::Display,
     };
-    let frame = Frame {
-        scene: &job.preset.scene,
-        quality: &job.quality,
-        size: job.export.size,
-        time_secs: job.time_secs,
-        output,
-    };
-    let still = renderer.still(&frame)?;
+    let mut scene = job.preset.scene.clone();
+    if job.export.is_panorama {
+        scene.camera.projection = Projection::Equirect;
+    }
+    let frame = Frame { scene: &scene, quality: &job.quality, size: job.export.size, time_secs: job.time_secs, output };
     let path = &job.export.path;
+    if job.export.still == Still::LayersExr {
+        let Some(layers) = renderer.layers(&frame, proceed)? else { return Ok(false) };
+        save_layers(path, &layers, &job.about(), ExrOptions::default())?;
+        return Ok(true);
+    }
+    let Some(still) = renderer.still_while(&frame, proceed)? else { return Ok(false) };
     if job.export.still == Still::Png {
         let (size, pixels) = renderer.rgba8_of(&still.into_display())?;
         save_png(path, size, &pixels, &job.about())?;
     } else {
         save_exr(path, &still.picture(&renderer)?.image, &job.about(), ExrOptions::default())?;
     }
-    Ok(())
+    Ok(true)
 }

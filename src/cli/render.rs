@@ -287,13 +287,16 @@ pub(super) fn run(args: &RenderArgs) -> Result<()> {
     for (path, time_secs) in &job.pictures {
         bar.set_message(path.display().to_string());
         let begun = Instant::now();
-        write_picture(&mut renderer, &job, args, (path, *time_secs))?;
+        let before = bar.position();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share")]
+        let tell = |share: f32| bar.set_position(before + (share * STEPS as f32) as u64);
+        write_picture(&mut renderer, (&job, args), (path, *time_secs), &tell)?;
+        bar.set_position(before + STEPS);
         if let Some(programs) = &mut programs {
             programs.keep(&gpu);
         }
         let seconds = begun.elapsed().as_secs_f64();
         bar.suspend(|| report(args, path, *time_secs, seconds))?;
-        bar.inc(1);
         if interrupt::is_asked() {
             bar.finish_and_clear();
             return Err(Interrupted(format!("{} is the last picture, with what was finished", path.display())).into());
@@ -303,19 +306,31 @@ pub(super) fn run(args: &RenderArgs) -> Result<()> {
     Ok(())
 }
 
-fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, time_secs): (&Path, f64)) -> Result<()> {
+fn write_picture(
+    renderer: &mut Renderer,
+    (job, args): (&Job, &RenderArgs),
+    (path, time_secs): (&Path, f64),
+    tell: &dyn Fn(f32),
+) -> Result<()> {
     let Job { preset, quality, output, .. } = job;
     let frame = Frame { scene: &preset.scene, quality, size: args.size, time_secs, output: *output };
     let about = About { preset, quality, time_secs };
     let failed = || format!("{} could not be rendered", path.display());
+    let not_finished = || Interrupted(format!("{} is not finished and was not written", path.display())).into();
+    let mut proceed = |share: f32| {
+        tell(share);
+        !interrupt::is_asked()
+    };
     if args.layers {
-        let layers = renderer.layers(&frame).with_context(failed)?;
+        let layers = renderer.layers(&frame, &mut proceed).with_context(failed)?;
+        let Some(layers) = layers else { return Err(not_finished()) };
         save_layers(path, &layers, &about, args.exr_options())?;
         return Ok(());
     }
     let (display, linear) = match job.goal {
         None => {
-            let still = renderer.still(&frame).with_context(failed)?;
+            let still = renderer.still_while(&frame, &mut proceed).with_context(failed)?;
+            let Some(still) = still else { return Err(not_finished()) };
             let linear = (job.format == Format::Exr).then(|| still.picture(renderer)).transpose()?;
             (still.into_display(), linear)
         }
@@ -323,7 +338,7 @@ fn write_picture(renderer: &mut Renderer, job: &Job, args: &RenderArgs, (path, t
             let truth = converge(renderer, &frame, goal).with_context(failed)?;
             if !truth.progress().is_done && job.pictures.len() > 1 {
                 // The next run would take it for a finished one.
-                return Err(Interrupted(format!("{} is not finished and was not written", path.display())).into());
+                return Err(not_finished());
             }
             eprintln!("{}: {}", path.display(), describe(goal, &truth.progress()));
             let linear = (job.format == Format::Exr).then(|| truth.picture(renderer)).transpose()?;
@@ -354,11 +369,14 @@ fn watch(renderer: &mut Renderer, frame: &Frame<'_>) -> Result<()> {
     }
 }
 
+/// Steps of the progress bar for each picture.
+const STEPS: u64 = 1000;
+
 fn progress(count: usize) -> ProgressBar {
-    let is_shown = count > 1 && std::io::stderr().is_terminal();
+    let is_shown = std::io::stderr().is_terminal();
     let target = if is_shown { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-    let bar = ProgressBar::with_draw_target(Some(count as u64), target);
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg} {eta}");
+    let bar = ProgressBar::with_draw_target(Some(count as u64 * STEPS), target);
+    let style = ProgressStyle::with_template("{wide_bar} {percent} % {msg} {eta}");
     bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 

@@ -1,8 +1,10 @@
 //! A still taken apart into what each light adds to it. Light adds up, so a layer is what is missing when its light is left
 //! out: pictures with more and more of it forced off, each less the next. The layers sum to the whole by construction.
 
+use super::truth::TruthPicture;
 use super::{LinearImage, RenderError, Renderer};
 use crate::plan::{Effect, Forced};
+use crate::scene::param::Colour;
 use crate::scene::{Frame, Quality, Scene};
 
 /// Light of a picture, in the order in which a compositor piles it up, and beside it the clouds' transmittance.
@@ -38,32 +40,46 @@ const PARTS: [Part; 7] = [
 const BACKDROP: &str = "backdrop";
 
 impl Renderer {
-    /// A finished still of the frame, as [`Renderer::still`] makes it, and its layers.
+    /// A finished still of the frame, as [`Renderer::still_while`] makes it, and its layers; `None` if it was given up.
     ///
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
-    pub fn layers(&mut self, frame: &Frame<'_>) -> Result<Layers, RenderError> {
+    pub fn layers(
+        &mut self,
+        frame: &Frame<'_>,
+        proceed: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Option<Layers>, RenderError> {
         let wanted = self.forced();
-        let layers = self.take_apart(frame, wanted);
+        let layers = self.take_apart(frame, wanted, proceed);
         self.force(wanted);
         layers
     }
 
-    fn take_apart(&mut self, frame: &Frame<'_>, wanted: Forced) -> Result<Layers, RenderError> {
+    fn take_apart(
+        &mut self,
+        frame: &Frame<'_>,
+        wanted: Forced,
+        proceed: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Option<Layers>, RenderError> {
+        let pictures = 1.0 + PARTS.len() as f32;
         let (mut scene, mut quality) = (frame.scene.clone(), frame.quality.clone());
         let mut forced = wanted;
-        let whole = self.picture_with(frame, (&scene, &quality), forced)?;
+        let whole = self.picture_with(frame, (&scene, &quality), forced, &mut |share| proceed(share / pictures))?;
+        let Some(whole) = whole else { return Ok(None) };
         let transmittance = whole.clouds.iter().map(|cloud| cloud[3]).collect();
         let mut before: Vec<[f32; 3]> = whole.image.rgba.iter().map(light).collect();
         let mut lights = Vec::new();
-        for part in PARTS {
+        for (index, part) in PARTS.into_iter().enumerate() {
             match part.effect {
                 Some(effect) => forced = forced.with(effect, Some(false)),
                 None if part.name == "multiple" => quality.octaves = 0,
-                None => scene.scattering.ambient_bottom = crate::scene::param::Colour(0.0, 0.0, 0.0),
+                None => scene.scattering.ambient_bottom = Colour(0.0, 0.0, 0.0),
             }
-            let next = self.picture_with(frame, (&scene, &quality), forced)?.image;
-            let next: Vec<[f32; 3]> = next.rgba.iter().map(light).collect();
+            let done = 1.0 + index as f32;
+            let mut told = |share: f32| proceed((done + share) / pictures);
+            let next = self.picture_with(frame, (&scene, &quality), forced, &mut told)?;
+            let Some(next) = next else { return Ok(None) };
+            let next: Vec<[f32; 3]> = next.image.rgba.iter().map(light).collect();
             if next != before {
                 let missing = before.iter().zip(&next).map(|(more, less)| std::array::from_fn(|c| more[c] - less[c]));
                 lights.push((part.name, missing.collect()));
@@ -71,7 +87,7 @@ impl Renderer {
             before = next;
         }
         lights.push((BACKDROP, before));
-        Ok(Layers { beauty: whole.image, lights, transmittance })
+        Ok(Some(Layers { beauty: whole.image, lights, transmittance }))
     }
 
     fn picture_with(
@@ -79,10 +95,11 @@ impl Renderer {
         frame: &Frame<'_>,
         (scene, quality): (&Scene, &Quality),
         forced: Forced,
-    ) -> Result<super::truth::TruthPicture, RenderError> {
+        proceed: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Option<TruthPicture>, RenderError> {
         self.force(forced);
-        let still = self.still(&Frame { scene, quality, ..*frame })?;
-        still.picture(self)
+        let still = self.still_while(&Frame { scene, quality, ..*frame }, proceed)?;
+        still.map(|still| still.picture(self)).transpose()
     }
 }
 

@@ -35,6 +35,10 @@ pub struct Still {
     source: TimingSource,
 }
 
+/// How often it is looked whether shaders have been compiled, and whether a still is still wanted.
+const COMPILE_POLL: Duration = Duration::from_millis(10);
+const PROCEED_EVERY: Duration = Duration::from_millis(150);
+
 /// What a picture beside the window's frames has to itself.
 pub(super) struct Apart {
     pub(super) targets: Targets,
@@ -92,10 +96,35 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
     pub fn still(&mut self, frame: &Frame<'_>) -> Result<Still, RenderError> {
+        let still = self.still_while(frame, &mut |_| true)?;
+        Ok(still.unwrap_or_else(|| unreachable!("nobody stops it")))
+    }
+
+    /// The same in slices: `proceed` hears the share of the work that is done several times a second, and `false` from it
+    /// gives the still up. Shaders are compiled on other threads meanwhile.
+    ///
+    /// # Errors
+    /// [`RenderError`] as for [`Self::render`].
+    pub fn still_while(
+        &mut self,
+        frame: &Frame<'_>,
+        proceed: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Option<Still>, RenderError> {
         let quality = frame.quality.of_still();
-        let mut still = self.begin_still(&Frame { quality: &quality, ..*frame }, quality.pixel_samples)?;
-        still.advance(self, Duration::MAX)?;
-        Ok(still)
+        let frame = Frame { quality: &quality, ..*frame };
+        while !self.still_is_ready(&frame, Integrator::Realtime, quality.pixel_samples)? {
+            if !proceed(0.0) {
+                return Ok(None);
+            }
+            std::thread::sleep(COMPILE_POLL);
+        }
+        let mut still = self.begin_still(&frame, quality.pixel_samples)?;
+        while !still.advance(self, PROCEED_EVERY)? {
+            if !proceed(still.share()) {
+                return Ok(None);
+            }
+        }
+        Ok(Some(still))
     }
 
     /// Makes what a picture beside the window's frames reads, and the targets and buffers of its own.
@@ -142,6 +171,13 @@ impl Still {
             }
         }
         Ok(self.jobs.is_empty())
+    }
+
+    /// Share of the work that is done, 0 to 1.
+    pub fn share(&self) -> f32 {
+        let whole = (self.each.len() + self.finish[0].len()).max(1) as f32;
+        let under_way = if self.jobs.is_empty() { 0.0 } else { 1.0 - (self.jobs.len() as f32 / whole).min(1.0) };
+        ((self.finished as f32 + under_way) / self.samples.count().max(1) as f32).min(1.0)
     }
 
     /// Samples of each pixel that are finished, and how many there will be.

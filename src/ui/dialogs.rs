@@ -51,6 +51,8 @@ pub struct ExportForm {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
+    /// Whether it shows all directions.
+    pub is_panorama: bool,
     /// Quality; `None` for that of the viewport.
     pub level: Option<QualityLevel>,
     /// Where it goes.
@@ -63,7 +65,7 @@ impl ExportForm {
         let path = PathBuf::from(format!("{}.exr", file_name(document.name())));
         let path = std::path::absolute(&path).unwrap_or(path).display().to_string();
         let level = Some(document.preset().quality.unwrap_or(QualityLevel::High));
-        Self { still: Still::Exr, width: 1920, height: 1080, level, path }
+        Self { still: Still::Exr, width: 1920, height: 1080, is_panorama: false, level, path }
     }
 
     /// Gives the path the ending that suits the still.
@@ -234,8 +236,12 @@ fn save_as(
 fn export(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>) -> Fate {
     ui.heading("Export still");
     ui.label("Rendered at once in full; the preset is stored in the file, so that opening it restores this sky.");
-    let kinds =
-        [(Still::Exr, "EXR, linear light"), (Still::CloudsExr, "EXR, clouds alone"), (Still::Png, "PNG, as shown")];
+    let kinds = [
+        (Still::Exr, "EXR, linear light"),
+        (Still::LayersExr, "EXR, layers of light"),
+        (Still::CloudsExr, "EXR, clouds alone"),
+        (Still::Png, "PNG, as shown"),
+    ];
     ui.horizontal_wrapped(|ui| {
         for (still, title) in kinds {
             if ui.selectable_label(form.still == still, title).clicked() {
@@ -250,12 +256,20 @@ fn export(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>) -> Fate
             let response = ui.add(egui::DragValue::new(value).range(1..=16_384).suffix(" px"));
             row::name(ui, &response, title, title);
         }
-        for (title, [width, height]) in [("HD", [1920, 1080]), ("4K", [3840, 2160]), ("2:1", [2048, 1024])] {
+        let sizes = [("HD", [1920, 1080]), ("4K", [3840, 2160])];
+        let panoramas = [("Panorama 2K", [2048, 1024]), ("4K pano", [4096, 2048]), ("8K pano", [8192, 4096])];
+        for (index, (title, [width, height])) in sizes.into_iter().chain(panoramas).enumerate() {
             if ui.button(title).on_hover_text(format!("{width} × {height}")).clicked() {
                 (form.width, form.height) = (width, height);
+                form.is_panorama = index >= sizes.len();
             }
         }
     });
+    ui.checkbox(&mut form.is_panorama, "All directions (longitude across, latitude down)")
+        .on_hover_text("For lighting with the sky; the camera’s place counts, and its heading is the middle");
+    // Light and opacity of each pixel, and as much again while it is written.
+    let megabytes = f64::from(form.width) * f64::from(form.height) * 96.0 / 1e6;
+    ui.weak(format!("Takes about {megabytes:.0} MB of memory"));
     ui.horizontal_wrapped(|ui| {
         ui.label("Quality");
         let viewport = ui.selectable_label(form.level.is_none(), "As in the window");
@@ -277,6 +291,7 @@ fn export(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>) -> Fate
                 actions.push(Action::Ask(Request::Export(Export {
                     still: form.still,
                     size: [form.width, form.height],
+                    is_panorama: form.is_panorama,
                     level: form.level,
                     path: PathBuf::from(form.path.trim()),
                 })));

@@ -79,7 +79,18 @@ pub struct State {
     /// Effects that run, or do not, whatever the sky calls for: to see what they do.
     pub forced: Forced,
     /// What a thread is busy with, for the status line.
-    pub busy: Option<String>,
+    pub busy: Option<Busy>,
+}
+
+/// What a thread is busy with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Busy {
+    /// In words.
+    pub text: String,
+    /// How much of it is done, 0 to 1, and the seconds that the rest is likely to take; `None` where nobody knows.
+    pub progress: Option<(f32, Option<f64>)>,
+    /// Whether it can be given up.
+    pub can_stop: bool,
 }
 
 impl Default for State {

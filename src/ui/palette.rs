@@ -86,7 +86,8 @@ pub(super) fn show(ui: &Ui, state: &mut State, document: &Document, actions: &mu
             for (index, (title, more, choice)) in found.iter().enumerate() {
                 let keys = match choice {
                     Choice::Command(command) => command.keys(ui.ctx()),
-                    _ => String::new(),
+                    Choice::Parameter(key) => key.clone(),
+                    Choice::Preset(_) => String::new(),
                 };
                 let button = egui::Button::selectable(index == palette.chosen, title.as_str());
                 let button = button.shortcut_text(keys).truncate().min_size([ui.available_width(), 0.0].into());

@@ -2,7 +2,7 @@
 
 use egui::{Align, Layout, Theme, Ui};
 
-use super::{Command, State, row};
+use super::{Busy, Command, State, row};
 use crate::app::action::{Action, Request};
 use crate::app::document::{Document, TIME_FACTOR_RANGE};
 use crate::app::preferences::Preferences;
@@ -29,8 +29,7 @@ pub(super) fn show(
             };
             ui.add(egui::Label::new(title).truncate()).on_hover_text(hint);
             if let Some(busy) = &state.busy {
-                ui.spinner();
-                ui.add(egui::Label::new(busy.as_str()).truncate());
+                self::busy(ui, busy, actions);
             }
         });
     });
@@ -95,6 +94,28 @@ fn entries(ui: &mut Ui, (state, document): (&State, &Document), groups: &[&[Comm
             }
         }
     }
+}
+
+/// What a thread is busy with, how far it is, and the way out. Laid out from the right.
+fn busy(ui: &mut Ui, busy: &Busy, actions: &mut Vec<Action>) {
+    if busy.can_stop {
+        let stop = ui.button("Cancel").on_hover_text("Gives it up; nothing is written");
+        row::name(ui, &stop, "Cancel the work", "busy.cancel");
+        if stop.clicked() {
+            actions.push(Action::Ask(Request::GiveUp));
+        }
+    }
+    match busy.progress {
+        Some((share, left)) => {
+            let left = left.map_or_else(String::new, |left| format!(" · {}", clock(left)));
+            let bar = egui::ProgressBar::new(share).desired_width(130.0);
+            ui.add(bar.text(format!("{:.0} %{left}", share * 100.0)));
+        }
+        None => {
+            ui.spinner();
+        }
+    }
+    ui.add(egui::Label::new(busy.text.as_str()).truncate());
 }
 
 /// The files that were opened or saved last.

@@ -128,7 +128,14 @@ fn layers_sum_to_the_picture_and_follow_their_lights() {
     let quality = Quality { octaves: 3, pixel_samples: 2, still_step: 1.0, ..quick() };
     let mut renderer = renderer();
     let mut layers_of = |scene: &Scene| {
-        let layers = renderer.layers(&frame(scene, &quality, [48, 27], Output::Linear)).expect("it can be rendered");
+        let mut shares = Vec::new();
+        let mut proceed = |share: f32| {
+            shares.push(share);
+            true
+        };
+        let layers = renderer.layers(&frame(scene, &quality, [48, 27], Output::Linear), &mut proceed);
+        let layers = layers.expect("it can be rendered").expect("it was wanted");
+        assert!(shares.is_sorted() && shares.iter().all(|share| (0.0..=1.0).contains(share)), "{shares:?}");
         assert!(renderer.forced().is_empty(), "nothing stays forced");
         layers
     };
@@ -162,4 +169,17 @@ fn layers_sum_to_the_picture_and_follow_their_lights() {
     assert_eq!((total(&darker, "ambient"), total(&darker, "bounce")), (0.0, 0.0));
     let ratio = total(&darker, "direct") / total(&brighter, "direct");
     assert!((ratio - 1.0).abs() < 1e-4, "the sun does not care: {ratio}");
+}
+
+#[test]
+fn a_still_that_is_given_up_is_no_picture_and_the_next_one_is() {
+    let (scene, quality) = (Scene::default(), Quality { pixel_samples: 64, still_step: 1.0, ..quick() });
+    let mut renderer = renderer();
+    let large = frame(&scene, &quality, [320, 180], Output::Linear);
+    let given_up = renderer.still_while(&large, &mut |share| share == 0.0).expect("nothing fails");
+    assert!(given_up.is_none(), "it was not wanted any more");
+    assert!(renderer.layers(&large, &mut |_| false).expect("nothing fails").is_none() && renderer.forced().is_empty());
+    let one = Quality { pixel_samples: 1, ..quality.clone() };
+    let small = frame(&scene, &one, [32, 18], Output::Linear);
+    assert!(renderer.still_while(&small, &mut |_| true).expect("nothing fails").is_some());
 }

@@ -277,3 +277,31 @@ fn the_sundial_turns_the_sun_and_knows_hours_and_cities() {
     editor.click_label("Now");
     assert!((1..=366).contains(&editor.scene().sun.day));
 }
+
+#[test]
+fn a_still_in_the_making_says_how_far_it_is_and_can_be_given_up() {
+    let mut editor = Editor::new();
+    editor.harness.state_mut().ui.busy = Some(nephoscope::ui::Busy {
+        text: "Rendering a still".to_owned(),
+        progress: Some((0.25, Some(75.0))),
+        can_stop: true,
+    });
+    editor.harness.run();
+    assert!(editor.has_label("25 % · 0:01:15"), "share and time left");
+    editor.click("busy.cancel");
+    assert_eq!(editor.requests.borrow().last(), Some(&Request::GiveUp));
+}
+
+#[test]
+fn a_panorama_of_layers_is_asked_for_in_the_export_form() {
+    let mut editor = Editor::new();
+    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::E);
+    editor.harness.run();
+    editor.click_label("EXR, layers of light");
+    editor.click_label("4K pano");
+    editor.click_label("Export");
+    let requests = editor.requests.borrow();
+    let Some(Request::Export(export)) = requests.last() else { panic!("{requests:?}") };
+    assert!(export.is_panorama && export.size == [4096, 2048], "{export:?}");
+    assert_eq!(export.still, nephoscope::app::action::Still::LayersExr);
+}
