@@ -7,10 +7,10 @@ use super::lab::Governor;
 use super::statistics::Statistics;
 use super::truth::{CompareJob, Outcome, Truths, Wishes};
 use crate::gpu::Gpu;
-use crate::plan::{Forced, FramePlan};
+use crate::plan::{Forced, FramePlan, Integrator};
 use crate::render::{Progress, RenderError, Renderer};
-use crate::scene::{Frame, Output, Quality, Scene, UpdateFraction};
-use crate::ui::{LabState, Readout};
+use crate::scene::{Frame, Output, Projection, Quality, Scene, UpdateFraction};
+use crate::ui::{LabState, Picked, Readout};
 
 /// Work sent to the device at a time. The panels' frame comes after at most one of these.
 const SLICE: Duration = Duration::from_millis(30);
@@ -111,6 +111,49 @@ impl Viewport {
         self.governor.follow(&lab.view);
         self.budget_ms = lab.governs.then_some(lab.frame_budget_ms);
         self.budget_ms.and_then(|_| self.governor.said())
+    }
+
+    /// What one point of the picture is, in numbers; the point is 0 to 1 from the top left. `None` while shaders are compiled.
+    pub(super) fn pick(&mut self, at: [f32; 2]) -> Result<Option<Picked>, RenderError> {
+        let Some(inputs) = &self.begun else { return Ok(None) };
+        let mut scene = inputs.scene.clone();
+        let towards = scene.camera.direction_through(at, inputs.size);
+        let eye = [scene.camera.east_m, scene.camera.height_m, scene.camera.south_m];
+        let up = if towards.y.abs() > 0.99 { glam::Vec3::X } else { glam::Vec3::Y };
+        scene.camera.look(towards, up);
+        scene.camera.projection = Projection::Perspective;
+        scene.camera.field_of_view_deg = 1.0;
+        // A point has no neighbours that could throw streaks on it.
+        scene.sunshafts.strength = 0.0;
+        let quality = Quality { update: UpdateFraction::Full, pixel_samples: 1, ..inputs.quality.clone() };
+        let point = Frame {
+            scene: &scene,
+            quality: &quality,
+            size: [1, 1],
+            time_secs: inputs.time_secs,
+            output: Output::Linear,
+        };
+        if !self.renderer.still_is_ready(&point, Integrator::Realtime, 1)? {
+            return Ok(None);
+        }
+        let mut still = self.renderer.begin_still(&point, 1)?;
+        still.advance(&self.renderer, Duration::MAX)?;
+        let picture = still.picture(&self.renderer)?;
+        let scale = picture.image.candela_per_unit;
+        let light = picture.image.rgba.first().map_or([0.0; 3], |[r, g, b, _]| [r * scale, g * scale, b * scale]);
+        let distance_m = picture.image.distance_m.first().copied().filter(|distance| *distance > 0.0);
+        Ok(Some(Picked {
+            at,
+            direction_deg: [
+                towards.y.clamp(-1.0, 1.0).asin().to_degrees(),
+                towards.x.atan2(-towards.z).to_degrees().rem_euclid(360.0),
+            ],
+            light,
+            display: None,
+            transmittance: picture.clouds.first().map_or(1.0, |cloud| cloud[3]),
+            distance_m,
+            position_m: distance_m.map(|far| std::array::from_fn(|axis| eye[axis] + far * towards[axis])),
+        }))
     }
 
     /// Begins a frame if one is due, and sends the next slice of work.

@@ -311,6 +311,9 @@ impl App {
         if self.session.document.is_playing() || live.hands.are_busy() {
             wake = sooner(wake, now + 5 * POLL);
         }
+        if is_idle {
+            self.inspect();
+        }
         let refined = self.refine(is_idle);
         if refined.has_worked {
             fastest = FASTEST_PANELS_BESIDE_WORK;

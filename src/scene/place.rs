@@ -138,6 +138,19 @@ impl Camera {
         [forward, level * cosine - upright * sine, upright * cosine + level * sine]
     }
 
+    /// Unit direction through a point of a picture of this size; the point is 0 to 1 from the top left.
+    pub fn direction_through(&self, [u, v]: [f32; 2], size: [u32; 2]) -> Vec3 {
+        match self.projection {
+            Projection::Perspective => {
+                let [forward, right, up] = self.axes();
+                let [across, high] = self.half_tangents(size);
+                (forward + right * (across * (2.0 * u - 1.0)) + up * (high * (1.0 - 2.0 * v))).normalize()
+            }
+            Projection::Equirect => direction(90.0 - 180.0 * v, self.heading_deg + 360.0 * (u - 0.5)),
+            Projection::Dome => direction(90.0 - 90.0 * v, self.heading_deg + 360.0 * (u - 0.5)),
+        }
+    }
+
     /// Turns it towards a direction, with `up` as near to the picture's up as can be. Neither may be zero.
     pub fn look(&mut self, forward: Vec3, up: Vec3) {
         let forward = forward.normalize();
@@ -203,6 +216,20 @@ mod tests {
         }
         camera.look(Vec3::NEG_Z, Vec3::new(0.5, 1.0, 0.0));
         assert!(camera.roll_deg > 0.0 && camera.axes()[1].y < 0.0, "a tilt to the right lowers the right side");
+    }
+
+    #[test]
+    fn corners_of_pictures_are_where_they_belong() {
+        let mut camera = Camera { pitch_deg: 0.0, field_of_view_deg: 90.0, ..Camera::default() };
+        let [forward, right, up] = camera.axes();
+        let corner = camera.direction_through([1.0, 0.0], [200, 100]);
+        assert!(corner.abs_diff_eq((forward + right * 2.0 + up).normalize(), 1e-6), "{corner}");
+        camera.projection = Projection::Equirect;
+        assert!(camera.direction_through([0.5, 0.5], [2, 1]).abs_diff_eq(forward, 1e-6), "the middle");
+        assert!(camera.direction_through([0.75, 0.5], [2, 1]).abs_diff_eq(right, 1e-6), "a quarter to the right");
+        assert!(camera.direction_through([0.1, 1.0], [2, 1]).abs_diff_eq(Vec3::NEG_Y, 1e-6), "straight down");
+        camera.projection = Projection::Dome;
+        assert!(camera.direction_through([0.5, 1.0], [2, 1]).abs_diff_eq(forward, 1e-6), "the horizon");
     }
 
     #[test]

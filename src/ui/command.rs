@@ -29,6 +29,8 @@ pub enum Command {
     Redo,
     /// List of steps on or off.
     History,
+    /// Points of the picture in numbers, on or off.
+    Inspect,
     /// Keep the sky and its picture.
     Snapshot,
     /// Random changes on or off.
@@ -82,7 +84,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 34] = [
+const TABLE: [(Command, Modifiers, Key, &str); 35] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -94,6 +96,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 34] = [
     (Command::Redo, CTRL_SHIFT, Key::Z, "Redo"),
     (Command::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
     (Command::History, Modifiers::NONE, Key::F8, "History"),
+    (Command::Inspect, Modifiers::NONE, Key::I, "Inspect points"),
     (Command::Snapshot, Modifiers::NONE, Key::F7, "Take a snapshot"),
     (Command::Vary, Modifiers::COMMAND, Key::R, "Vary the sky"),
     (Command::CopySky, CTRL_SHIFT, Key::C, "Copy the sky as text"),
@@ -178,6 +181,10 @@ impl Command {
             Self::Undo => actions.push(Action::Undo),
             Self::Redo => actions.push(Action::Redo),
             Self::History => state.show_history = !state.show_history,
+            Self::Inspect => {
+                let is_on = !state.inspector.is_on;
+                state.inspector = super::InspectorState { is_on, ..Default::default() };
+            }
             Self::Snapshot => ask(Request::Snapshot),
             Self::Vary => state.vary.is_open = !state.vary.is_open,
             Self::CopySky => {
@@ -251,6 +258,7 @@ impl Command {
             Self::Keep => state.truth.is_kept,
             Self::History => state.show_history,
             Self::Vary => state.vary.is_open,
+            Self::Inspect => state.inspector.is_on,
             _ => false,
         }
     }
@@ -259,7 +267,13 @@ impl Command {
     fn yields_to_focus(self) -> bool {
         matches!(
             self,
-            Self::PlayPause | Self::ResetCamera | Self::ResetTime | Self::Brighter | Self::Darker | Self::HideAll
+            Self::Inspect
+                | Self::PlayPause
+                | Self::ResetCamera
+                | Self::ResetTime
+                | Self::Brighter
+                | Self::Darker
+                | Self::HideAll
         )
     }
 }

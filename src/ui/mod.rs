@@ -4,6 +4,7 @@ mod clipboard;
 mod command;
 mod dialogs;
 mod history;
+mod inspector;
 mod lab;
 mod overlay;
 mod palette;
@@ -21,6 +22,7 @@ mod viewport;
 
 pub use command::Command;
 pub use dialogs::{Dialog, ExportForm};
+pub use inspector::{InspectorState, Picked};
 pub use lab::{LabState, LabView, Measured, Phase};
 pub use overlay::{PassLine, Readout};
 pub use palette::PaletteState;
@@ -56,6 +58,8 @@ pub struct State {
     pub show_overlay: bool,
     /// Skies to go back to and to compare with.
     pub snapshots: SnapshotState,
+    /// Points of the picture in numbers.
+    pub inspector: InspectorState,
     /// Commands by name.
     pub palette: PaletteState,
     /// Random changes.
@@ -101,6 +105,7 @@ impl Default for State {
             show_presets: None,
             show_overlay: false,
             snapshots: SnapshotState::default(),
+            inspector: InspectorState::default(),
             palette: PaletteState::default(),
             vary: VaryState::default(),
             show_history: false,
@@ -187,7 +192,8 @@ pub fn show(
         });
     }
     let central = egui::CentralPanel::no_frame().show(ui, |ui| {
-        viewport::show(ui, &mut state.viewport, (&mut state.truth, &mut state.snapshots), document);
+        let beside = (&mut state.truth, &mut state.snapshots, &mut state.inspector);
+        viewport::show(ui, &mut state.viewport, beside, document);
     });
     let area = central.response.rect;
     if state.show_overlay && !state.hide_all {
@@ -199,6 +205,7 @@ pub fn show(
     if state.lab.is_open && !state.hide_all {
         lab::show(ui.ctx(), area, (&mut state.lab, document), &mut actions);
     }
+    inspector::show(ui.ctx(), area, &state.inspector);
     if state.vary.is_open && !state.hide_all {
         vary::show(ui.ctx(), area, (&mut state.vary, document), &mut actions);
     }

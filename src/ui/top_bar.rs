@@ -61,7 +61,7 @@ fn menus(
     });
     ui.menu_button("View", |ui| {
         let groups = [
-            &[Command::Presets, Command::Panel, Command::Overlay, Command::Lab][..],
+            &[Command::Presets, Command::Panel, Command::Overlay, Command::Lab, Command::Inspect][..],
             &[Command::HideAll, Command::FullScreen],
             &[Command::ResetCamera, Command::Brighter, Command::Darker],
             &[Command::Refine, Command::Keep, Command::Compare],

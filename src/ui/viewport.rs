@@ -2,6 +2,7 @@
 
 use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
 
+use super::inspector::InspectorState;
 use super::snapshots::{self, Beside, SnapshotState};
 use super::truth::{Comparison, TruthState};
 use crate::app::document::Document;
@@ -70,13 +71,16 @@ impl ViewportState {
 pub(super) fn show(
     ui: &mut Ui,
     state: &mut ViewportState,
-    (truth, snapshots): (&mut TruthState, &mut SnapshotState),
+    (truth, snapshots, inspector): (&mut TruthState, &mut SnapshotState, &mut InspectorState),
     document: &Document,
 ) {
     let rect = ui.available_rect_before_wrap();
     state.rect = rect;
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     super::row::name(ui, &response, &format!("Sky: {}", document.name()), "viewport");
+    if inspector.is_on && response.hovered() {
+        ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
+    }
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 0.0, SURROUND);
     // At rest the refined picture stands for the realtime one; while pictures are compared, that of all pixels does.
@@ -88,6 +92,13 @@ pub(super) fn show(
                 image(&painter, place, picture.texture);
                 beside(ui, place, snapshots);
             }
+            let place = fitted(rect, picture.size);
+            if let (true, true, Some(at)) = (inspector.is_on, response.clicked(), response.interact_pointer_pos()) {
+                let inside = (at - place.min) / place.size();
+                inspector.wish = Some([inside.x.clamp(0.0, 1.0), inside.y.clamp(0.0, 1.0)]);
+                inspector.picked = None;
+            }
+            super::inspector::mark(&painter, place, inspector);
         }
         None => {
             let font = FontId::proportional(16.0);

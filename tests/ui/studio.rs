@@ -305,3 +305,26 @@ fn a_panorama_of_layers_is_asked_for_in_the_export_form() {
     assert!(export.is_panorama && export.size == [4096, 2048], "{export:?}");
     assert_eq!(export.still, nephoscope::app::action::Still::LayersExr);
 }
+
+#[test]
+fn a_click_asks_for_a_point_only_while_points_are_inspected() {
+    let mut editor = Editor::new();
+    editor.harness.state_mut().ui.viewport.picture = Some(picture(1));
+    editor.harness.run();
+    let rect = editor.harness.state().ui.viewport.rect;
+    let click = |editor: &mut Editor| {
+        let at = rect.min + egui::vec2(0.25 * rect.width(), 0.75 * rect.height());
+        editor.harness.hover_at(at);
+        editor.harness.drag_at(at);
+        editor.harness.drop_at(at);
+        editor.harness.run();
+    };
+    click(&mut editor);
+    assert_eq!(editor.harness.state().ui.inspector.wish, None, "not now");
+    editor.press(egui::Key::I);
+    click(&mut editor);
+    let wish = editor.harness.state().ui.inspector.wish.expect("now");
+    assert!((wish[0] - 0.25).abs() < 0.1 && (wish[1] - 0.75).abs() < 0.2, "{wish:?}");
+    editor.press(egui::Key::I);
+    assert!(!editor.harness.state().ui.inspector.is_on && editor.harness.state().ui.inspector.wish.is_none());
+}

@@ -111,6 +111,26 @@ impl App {
 }
 
 impl App {
+    /// Looks at the point that was clicked, once the picture is finished and the shaders are there.
+    pub(super) fn inspect(&mut self) {
+        let Some(live) = &mut self.live else { return };
+        let Some(at) = self.session.ui.inspector.wish else { return };
+        match live.viewport.pick(at) {
+            Ok(None) => {}
+            Ok(Some(mut picked)) => {
+                picked.display =
+                    live.shown_rgba8(&self.session).ok().and_then(|(size, pixels)| pixel(size, &pixels, at));
+                self.session.ui.inspector.picked = Some(picked);
+                self.session.ui.inspector.wish = None;
+            }
+            Err(error) => {
+                self.session.ui.inspector.wish = None;
+                self.session.ui.toasts.error(error);
+            }
+        }
+        live.draw_within(STATUS);
+    }
+
     /// Puts the picture into the clipboard as the window shows it.
     pub(super) fn copy_picture(&mut self) {
         let Some(live) = &self.live else { return };
@@ -183,4 +203,13 @@ impl Live {
             None => self.viewport.renderer().display_rgba8(),
         }
     }
+}
+
+/// The colour at a point of a picture, 0 to 1 from the top left.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
+fn pixel(size: [u32; 2], rgba8: &[u8], at: [f32; 2]) -> Option<[u8; 3]> {
+    let [x, y] = [0, 1].map(|axis| ((at[axis] * size[axis] as f32) as u32).min(size[axis].saturating_sub(1)) as usize);
+    let index = 4 * (y * size[0] as usize + x);
+    let colour = rgba8.get(index..index + 3)?;
+    Some([colour[0], colour[1], colour[2]])
 }
