@@ -166,7 +166,7 @@ fn pictures(folder: &Path) -> Result<[Vec<u8>; 2], Box<dyn Error>> {
         distance_m: vec![1.0; 16],
         candela_per_unit: 1.0,
     };
-    files::save_exr(&exr, &image, &about, nephoscope::export::exr::ExrOptions::default())?;
+    files::save_exr(&exr, image, &about, nephoscope::export::exr::ExrOptions::default())?;
     Ok([fs::read(png)?, fs::read(exr)?])
 }
 

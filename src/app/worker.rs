@@ -196,7 +196,7 @@ fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result
     let path = &job.export.path;
     if job.export.still == Still::LayersExr {
         let Some(layers) = renderer.layers(&frame, proceed)? else { return Ok(false) };
-        save_layers(path, &layers, &job.about(), ExrOptions::default())?;
+        save_layers(path, layers, &job.about(), ExrOptions::default())?;
         return Ok(true);
     }
     let Some(still) = renderer.still_while(&frame, proceed)? else { return Ok(false) };
@@ -204,7 +204,9 @@ fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result
         let (size, pixels) = renderer.rgba8_of(&still.into_display())?;
         save_png(path, size, &pixels, &job.about())?;
     } else {
-        save_exr(path, &still.picture(&renderer)?.image, &job.about(), ExrOptions::default())?;
+        let image = still.picture(&renderer)?.image;
+        drop(still);
+        save_exr(path, image, &job.about(), ExrOptions::default())?;
     }
     Ok(true)
 }

@@ -324,14 +324,15 @@ fn write_picture(
     if args.layers {
         let layers = renderer.layers(&frame, &mut proceed).with_context(failed)?;
         let Some(layers) = layers else { return Err(not_finished()) };
-        save_layers(path, &layers, &about, args.exr_options())?;
+        save_layers(path, layers, &about, args.exr_options())?;
         return Ok(());
     }
     let (display, linear) = match job.goal {
         None => {
             let still = renderer.still_while(&frame, &mut proceed).with_context(failed)?;
             let Some(still) = still else { return Err(not_finished()) };
-            let linear = (job.format == Format::Exr).then(|| still.picture(renderer)).transpose()?;
+            let linear =
+                (job.format == Format::Exr).then(|| still.picture(renderer)).transpose()?.map(|whole| whole.image);
             (still.into_display(), linear)
         }
         Some(goal) => {
@@ -341,17 +342,18 @@ fn write_picture(
                 return Err(not_finished());
             }
             eprintln!("{}: {}", path.display(), describe(goal, &truth.progress()));
-            let linear = (job.format == Format::Exr).then(|| truth.picture(renderer)).transpose()?;
+            let linear =
+                (job.format == Format::Exr).then(|| truth.picture(renderer)).transpose()?.map(|whole| whole.image);
             (truth.into_display(), linear)
         }
     };
-    let is_broken = linear.as_ref().is_some_and(|linear| linear.image.rgba.iter().flatten().any(|v| !v.is_finite()));
+    let is_broken = linear.as_ref().is_some_and(|linear| linear.rgba.iter().flatten().any(|v| !v.is_finite()));
     if args.watch || is_broken {
         watch(renderer, &frame).with_context(|| format!("{} was not written", path.display()))?;
     }
     anyhow::ensure!(!is_broken, "{} was not written: it holds values that are not finite", path.display());
     match linear {
-        Some(linear) => save_exr(path, &linear.image, &about, args.exr_options()).map(|_| ())?,
+        Some(linear) => save_exr(path, linear, &about, args.exr_options()).map(|_| ())?,
         None => {
             let (size, pixels) = renderer.rgba8_of(&display)?;
             save_png(path, size, &pixels, &about)?;

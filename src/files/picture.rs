@@ -51,36 +51,31 @@ pub fn save_png(path: &Path, size: [u32; 2], rgba: &[u8], about: &About<'_>) -> 
 /// If a value is NaN or infinite, if half was demanded and a value exceeds it, or if the file cannot be written.
 pub fn save_exr(
     path: &Path,
-    image: &LinearImage,
+    image: LinearImage,
     about: &About<'_>,
     options: ExrOptions,
 ) -> Result<ExrDepth, FileError> {
-    save_with(path, (image, &ExrLayers::default()), about, options)
+    save_with(path, (image, ExrLayers::default()), about, options)
 }
 
 /// The same with the layers of light, the clouds' transmittance and their distance along each ray.
 ///
 /// # Errors
 /// As [`save_exr`].
-pub fn save_layers(
-    path: &Path,
-    layers: &Layers,
-    about: &About<'_>,
-    options: ExrOptions,
-) -> Result<ExrDepth, FileError> {
+pub fn save_layers(path: &Path, layers: Layers, about: &About<'_>, options: ExrOptions) -> Result<ExrDepth, FileError> {
     let extra = ExrLayers {
-        lights: layers.lights.iter().map(|(name, light)| ((*name).to_owned(), light.clone())).collect(),
+        lights: layers.lights.into_iter().map(|(name, light)| (name.to_owned(), light)).collect(),
         data: vec![
-            ("transmittance.A".to_owned(), layers.transmittance.clone()),
+            ("transmittance.A".to_owned(), layers.transmittance),
             ("distance.X".to_owned(), layers.beauty.distance_m.clone()),
         ],
     };
-    save_with(path, (&layers.beauty, &extra), about, options)
+    save_with(path, (layers.beauty, extra), about, options)
 }
 
 fn save_with(
     path: &Path,
-    (image, layers): (&LinearImage, &ExrLayers),
+    (image, layers): (LinearImage, ExrLayers),
     about: &About<'_>,
     options: ExrOptions,
 ) -> Result<ExrDepth, FileError> {
@@ -99,8 +94,8 @@ fn save_with(
         ..ExrMetadata::default()
     };
     let [width, height] = image.size;
-    let image = FloatImage { width, height, rgba: image.rgba.clone(), depth: None, crop: None };
-    Ok(write_exr_with_layers(path, (&image, layers), &metadata, options)?)
+    let image = FloatImage { width, height, rgba: image.rgba, depth: None, crop: None };
+    Ok(write_exr_with_layers(path, (&image, &layers), &metadata, options)?)
 }
 
 /// The preset with map images named without their folders, and the images themselves.
@@ -182,7 +177,7 @@ mod tests {
             candela_per_unit: 1.0,
         };
         let exr = folder.path().join("sky.exr");
-        assert_eq!(save_exr(&exr, &image, &about, ExrOptions::default()).expect("written"), ExrDepth::Float);
+        assert_eq!(save_exr(&exr, image, &about, ExrOptions::default()).expect("written"), ExrDepth::Float);
         let mut sky = open(&exr).expect("opened");
         assert_eq!((sky.quality, sky.origin), (Some(quality.clone()), Origin::Picture(exr)));
         let unpacked = std::mem::take(&mut sky.preset.scene.weather.layers[0].image.0);

@@ -49,7 +49,7 @@ pub(super) fn show(context: &Context, area: Rect, state: &InspectorState) {
                 Grid::new("inspector values").num_columns(2).spacing([12.0, 2.0]).show(ui, |ui| {
                     for (name, value) in lines(picked) {
                         ui.weak(name);
-                        ui.monospace(value);
+                        ui.label(egui::RichText::new(value).monospace().strong());
                         ui.end_row();
                     }
                 });
@@ -90,7 +90,11 @@ fn lines(picked: &Picked) -> Vec<(&'static str, String)> {
         (Some(distance), Some([east, up, south])) => {
             lines.push(("Distance", format!("{distance:.0} m")));
             lines.push(("Height", format!("{up:.0} m")));
-            lines.push(("Place", format!("{east:.0} m east, {south:.0} m south")));
+            let side = |value: f32, [above, below]: [&str; 2]| {
+                format!("{:.0} m {}", value.abs(), if value < 0.0 { below } else { above })
+            };
+            let place = [side(east, ["east", "west"]), side(south, ["south", "north"])];
+            lines.push(("Place", place.join(", ")));
         }
         _ => lines.push(("Distance", "no cloud".to_owned())),
     }
