@@ -57,6 +57,10 @@ pub enum Action {
         preset: Box<Preset>,
         /// How it was computed.
         quality: Box<Quality>,
+        /// Where it came from or was saved to.
+        path: Option<PathBuf>,
+        /// What that file held.
+        saved: Box<Preset>,
     },
     /// Take the last step back.
     Undo,
@@ -272,15 +276,6 @@ impl Action {
             Self::ViewBack => "camera back".to_owned(),
             Self::ViewForth => "camera forth".to_owned(),
             Self::Ask(request) => request.name().to_owned(),
-        }
-    }
-
-    /// Whether an edit is one of the camera.
-    pub fn concerns_camera(&self) -> bool {
-        match self {
-            Self::EditScene { key, .. } => key.split('.').next() == Some("camera"),
-            Self::Restore { .. } => true,
-            _ => false,
         }
     }
 }

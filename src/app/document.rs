@@ -119,8 +119,8 @@ impl Document {
         self.saved = self.preset.clone();
     }
 
-    /// Makes the document count as unsaved whatever it holds, as after a recovery.
-    pub fn mark_recovered(&mut self) {
+    /// Makes the document count as unsaved whatever it holds, as after a recovery or a paste.
+    pub fn mark_unsaved(&mut self) {
         self.saved = Preset::default();
         self.saved.name.push_str("before recovery");
     }
@@ -128,9 +128,10 @@ impl Document {
     /// Becomes another document; the step can be undone.
     pub fn replace_by(&mut self, other: Self, step: impl Into<String>) {
         let before = self.state();
-        let (mut history, views) = (std::mem::take(&mut self.history), std::mem::take(&mut self.views));
+        let mut history = std::mem::take(&mut self.history);
         history.record(step.into(), Scope::Document, before);
-        *self = Self { history, views, ..other };
+        // Cameras of another sky lead nowhere in this one.
+        *self = Self { history, views: Views::default(), ..other };
     }
 
     /// Carries out an action and remembers how to undo it. Requests are not for the document and change nothing.
@@ -148,14 +149,18 @@ impl Document {
                 let before = self.preset.scene.camera.clone();
                 self.change(action);
                 if self.preset.scene.camera != before {
-                    self.views.leave(&before);
+                    self.views.leave(&before, *action == Action::ResetCamera);
                 }
             }
             _ => {
                 let before = self.state();
                 self.change(action);
                 if self.preset != before.preset || self.quality != before.quality {
-                    let scope = if action.concerns_camera() { Scope::Camera } else { Scope::Sky };
+                    let scope = match action {
+                        Action::Restore { .. } => Scope::Document,
+                        _ if self.preset.scene.camera != before.preset.scene.camera => Scope::Camera,
+                        _ => Scope::Sky,
+                    };
                     self.history.record(action.name(), scope, before);
                 }
             }
@@ -204,7 +209,11 @@ impl Document {
             match scope {
                 Scope::Sky => self.preset.scene.camera = camera,
                 Scope::Camera => {}
-                Scope::Document => (self.path, self.saved) = (state.path, state.saved),
+                Scope::Document => {
+                    (self.path, self.saved) = (state.path, state.saved);
+                    (self.time_secs, self.playing, self.time_factor) = state.time;
+                    self.views = Views::default();
+                }
             }
         }
     }
@@ -215,6 +224,7 @@ impl Document {
             quality: self.quality.clone(),
             path: self.path.clone(),
             saved: self.saved.clone(),
+            time: (self.time_secs, self.playing, self.time_factor),
         }
     }
 
@@ -223,7 +233,8 @@ impl Document {
         match action {
             Action::EditScene { scene: edited, .. } => {
                 *scene = (**edited).clone();
-                scene.give_grids_a_box();
+                // What is saved has to open again.
+                scene.mend();
             }
             Action::EditQuality { quality, .. } => self.quality = (**quality).clone(),
             Action::SetQualityLevel(level) => self.quality = Quality::level(*level),
@@ -233,9 +244,11 @@ impl Document {
             Action::ChangeExposure(stops) => {
                 scene.display.exposure_ev = (scene.display.exposure_ev + stops).clamp(-12.0, 24.0);
             }
-            Action::Restore { preset, quality, .. } => {
+            Action::Restore { preset, quality, path, saved, .. } => {
                 self.preset = (**preset).clone();
                 self.quality = (**quality).clone();
+                self.path.clone_from(path);
+                self.saved = (**saved).clone();
             }
             Action::Rename(name) => self.preset.name.clone_from(name),
             Action::Play(playing) => self.playing = *playing,
@@ -274,6 +287,7 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
 
     fn document() -> Document {
         Document::new(Preset::default(), Quality::default())
@@ -339,17 +353,52 @@ mod tests {
     fn another_document_can_be_undone_with_its_file() {
         let mut document = document();
         edit(&mut document, 0.25);
-        let other = Document::from_file(
-            Preset::new("Other", crate::scene::Scene::default()),
-            Quality::default(),
-            "o.ron".into(),
-        );
+        let other = Document::from_file(Preset::new("Other", Scene::default()), Quality::default(), "o.ron".into());
         document.replace_by(other, "open Other");
         assert_eq!((document.name(), document.is_modified()), ("Other", false));
         document.apply(&Action::Undo);
         assert_eq!((coverage(&document), document.path(), document.is_modified()), (0.25, None, true));
         document.apply(&Action::Redo);
         assert_eq!((document.name(), document.path().is_some()), ("Other", true));
+    }
+
+    #[test]
+    fn a_step_that_moves_the_camera_brings_it_back() {
+        let mut document = document();
+        let begun = document.preset().scene.camera.clone();
+        let mut scene = document.preset().scene.clone();
+        scene.camera.height_m += 500.0;
+        document.apply(&Action::EditScene { key: "Camera of Stormy".to_owned(), scene: Box::new(scene) });
+        document.apply(&Action::Undo);
+        assert_eq!(document.preset().scene.camera, begun, "whatever the step is called");
+    }
+
+    #[test]
+    fn a_restored_snapshot_belongs_to_its_own_file() {
+        let mut document = document();
+        document.mark_saved("a.ron".into());
+        let snapshot = Action::Restore {
+            name: "restore".to_owned(),
+            preset: Box::new(document.preset().clone()),
+            quality: Box::new(document.quality().clone()),
+            path: document.path().cloned(),
+            saved: Box::new(document.saved().clone()),
+        };
+        let other = Document::from_file(Preset::new("B", Scene::default()), Quality::default(), "b.ron".into());
+        document.replace_by(other, "open B");
+        document.apply(&snapshot);
+        assert_eq!(document.path(), Some(&"a.ron".into()), "saving must not overwrite the other sky");
+        document.apply(&Action::Undo);
+        assert_eq!((document.name(), document.path()), ("B", Some(&"b.ron".into())));
+    }
+
+    #[test]
+    fn edits_can_be_saved_and_opened_again() {
+        let mut document = document();
+        let mut scene = document.preset().scene.clone();
+        scene.layers[0].top_m = scene.layers[0].base_m - 300.0;
+        document.apply(&Action::EditScene { key: "layers.0.top_m".to_owned(), scene: Box::new(scene) });
+        assert!(Preset::from_ron(&document.preset().to_ron(), "saved").is_ok(), "the top is above the base");
     }
 
     #[test]

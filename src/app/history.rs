@@ -28,6 +28,8 @@ pub(super) struct State {
     pub(super) quality: Quality,
     pub(super) path: Option<PathBuf>,
     pub(super) saved: Preset,
+    /// Seconds since the scene began, whether time runs, and how fast.
+    pub(super) time: (f64, bool, f64),
 }
 
 /// A step with the document on its other side: before it among those that can be undone, after it among the others.
@@ -117,10 +119,10 @@ pub(super) struct Views {
 }
 
 impl Views {
-    /// Remembers a camera that is being left; a flight without a pause is one step.
-    pub(super) fn leave(&mut self, camera: &Camera) {
+    /// Remembers a camera that is being left; a flight without a pause is one step, a jump is one of its own.
+    pub(super) fn leave(&mut self, camera: &Camera, is_jump: bool) {
         let is_new = self.moved.is_none_or(|moved| moved.elapsed() >= ONE_STEP);
-        if is_new {
+        if is_new || is_jump {
             self.past.push(camera.clone());
             self.past.drain(..self.past.len().saturating_sub(MOST_STEPS));
         }

@@ -65,8 +65,11 @@ pub fn run(options: Options) -> anyhow::Result<()> {
         return Err(NoDisplay("neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned()).into());
     }
     let document = open(&options)?;
-    let folders = Folders::of_user();
-    window::run(Session::new(document, folders), options.adapter)
+    let mut session = Session::new(document, Folders::of_user());
+    if let Some(file) = options.scene.as_deref().filter(|file| file.is_file()) {
+        session.preferences.used(file);
+    }
+    window::run(session, options.adapter)
 }
 
 /// The document that the options ask for.

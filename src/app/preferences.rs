@@ -25,37 +25,45 @@ pub struct Preferences {
     pub recent: Vec<PathBuf>,
     /// Presets with a star: short names of built-in ones, and files.
     pub favourites: BTreeSet<PathBuf>,
-    /// Whether the hints for the first run were seen.
-    pub has_seen_hints: bool,
 }
 
 impl Default for Preferences {
     fn default() -> Self {
-        Self { light: None, zoom: 1.0, recent: Vec::new(), favourites: BTreeSet::new(), has_seen_hints: false }
+        Self { light: None, zoom: 1.0, recent: Vec::new(), favourites: BTreeSet::new() }
     }
 }
 
 impl Preferences {
-    /// Reads the file; what cannot be read stands at its default.
+    /// Reads the file. One that cannot be understood is put aside beside it, as somebody may want to mend it.
     pub fn load(path: &Path) -> Self {
         let is_sound = std::fs::metadata(path).is_ok_and(|about| about.is_file() && about.len() <= MOST_BYTES);
         let text = is_sound.then(|| std::fs::read_to_string(path).ok()).flatten();
-        let read: Self = text.and_then(|text| ron::from_str(&text).ok()).unwrap_or_default();
+        let read: Option<Self> = text.and_then(|text| ron::from_str(&text).ok());
+        if read.is_none() && path.is_file() {
+            // What cannot be moved is replaced at the next change.
+            let _ = std::fs::rename(path, path.with_extension("ron.damaged"));
+        }
+        let read = read.unwrap_or_default();
         let zoom = if read.zoom.is_finite() { read.zoom.clamp(0.5, 4.0) } else { 1.0 };
         Self { zoom, ..read }
     }
 
-    /// Writes the file, whole or not at all. What another window has opened meanwhile stays among the recent files.
+    /// Writes the file, whole or not at all. `before` is how they were read or written last: what has not changed since is as
+    /// another window has left it.
     ///
     /// # Errors
     /// If the folder or the file cannot be written.
-    pub fn save(&mut self, path: &Path) -> Result<(), ExportError> {
-        for other in Self::load(path).recent {
+    pub fn save(&mut self, path: &Path, before: &Self) -> Result<(), ExportError> {
+        let others = Self::load(path);
+        for other in others.recent {
             if !self.recent.contains(&other) {
                 self.recent.push(other);
             }
         }
         self.recent.truncate(MOST_RECENT);
+        let given = self.favourites.difference(&before.favourites).cloned();
+        let taken: BTreeSet<_> = before.favourites.difference(&self.favourites).cloned().collect();
+        self.favourites = others.favourites.into_iter().filter(|star| !taken.contains(star)).chain(given).collect();
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|error| ExportError::writing(path, error))?;
         }
@@ -97,11 +105,17 @@ mod tests {
         one.used(Path::new("/skies/b.ron"));
         one.used(Path::new("/skies/a.ron"));
         assert_eq!(one.recent, [PathBuf::from("/skies/a.ron"), PathBuf::from("/skies/b.ron")]);
-        one.save(&path).expect("written");
+        one.toggle_favourite(Path::new("stormy"));
+        one.save(&path, &Preferences::default()).expect("written");
         let mut other = Preferences::default();
         other.used(Path::new("/skies/c.ron"));
-        other.save(&path).expect("written");
+        other.save(&path, &Preferences::default()).expect("written");
         let read = Preferences::load(&path);
+        assert!(read.favourites.contains(Path::new("stormy")), "the other window's star");
+        let mut without = read.clone();
+        without.toggle_favourite(Path::new("stormy"));
+        without.save(&path, &read).expect("written");
+        assert!(Preferences::load(&path).favourites.is_empty(), "a star that was taken is gone");
         assert_eq!(read.recent.len(), 3, "both windows' files: {:?}", read.recent);
         assert_eq!(read.recent[0], PathBuf::from("/skies/c.ron"));
     }
@@ -110,10 +124,13 @@ mod tests {
     fn damaged_preferences_are_the_usual_ones() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let path = folder.path().join("preferences.ron");
-        for text in ["", "(((", "(zoom: NaN)", "(zoom: 1e30, unknown: 3)", "(light: 7)"] {
+        for (text, zoom) in
+            [("", 1.0), ("(((", 1.0), ("(zoom: NaN)", 1.0), ("(zoom: 2.0, unknown: 3)", 2.0), ("(light: 7)", 1.0)]
+        {
             std::fs::write(&path, text).expect("written");
-            let read = Preferences::load(&path);
-            assert!((0.5..=4.0).contains(&read.zoom) && read.recent.is_empty(), "{text}: {read:?}");
+            assert_eq!(Preferences::load(&path).zoom, zoom, "{text}");
         }
+        let aside = std::fs::read_to_string(folder.path().join("preferences.ron.damaged")).expect("put aside");
+        assert_eq!(aside, "(light: 7)", "as it was");
     }
 }

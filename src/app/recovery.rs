@@ -1,6 +1,6 @@
 //! Keeps a copy of unsaved work, so that a crash costs at most half a minute.
 
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -27,10 +27,11 @@ fn copy_of(folder: &Path, window: u32) -> PathBuf {
     folder.join(if window == 0 { "recovery.ron".to_owned() } else { format!("recovery-{window}.ron") })
 }
 
-/// The lock of a window's copy, unless another window holds it.
-fn lock_of(folder: &Path, window: u32) -> Option<File> {
-    let lock = File::create(folder.join(format!("recovery-{window}.lock"))).ok()?;
-    lock.try_lock().is_ok().then_some(lock)
+/// The lock of a window's copy, and whether another window holds it. Where there are no locks nobody holds one.
+fn lock_of(folder: &Path, window: u32) -> (Option<File>, bool) {
+    let Ok(lock) = File::create(folder.join(format!("recovery-{window}.lock"))) else { return (None, false) };
+    let is_held = matches!(lock.try_lock(), Err(TryLockError::WouldBlock));
+    (Some(lock), is_held)
 }
 
 impl Recovery {
@@ -45,15 +46,18 @@ impl Recovery {
             if own.is_some() && !path.exists() {
                 continue;
             }
-            let Some(lock) = lock_of(folder, window) else { continue };
+            let (lock, is_held) = lock_of(folder, window);
+            if is_held {
+                continue;
+            }
             if path.exists() {
                 // A copy that nobody holds: that of a window that has crashed.
                 let left = Self::read(folder, &path);
-                return (Self { path, written: None, last: Instant::now(), _lock: Some(lock) }, Some(left));
+                return (Self { path, written: None, last: Instant::now(), _lock: lock }, Some(left));
             }
             own.get_or_insert((path, lock));
         }
-        let (path, lock) = own.map_or_else(|| (copy_of(folder, 0), None), |(path, lock)| (path, Some(lock)));
+        let (path, lock) = own.unwrap_or_else(|| (copy_of(folder, 0), None));
         (Self { path, written: None, last: Instant::now(), _lock: lock }, None)
     }
 

@@ -6,7 +6,8 @@ use super::action::{Action, Answer, Browse, Part, Request};
 use super::document::Document;
 use super::preferences::Preferences;
 use super::storage;
-use crate::files::{self, Origin, Sky};
+use crate::export::ExportError;
+use crate::files::{self, FileError, Origin, Sky};
 use crate::scene::param::Choice as _;
 use crate::scene::{MapSource, Preset, Quality, Scene, clip};
 use crate::ui::{self, Dialog, set_file_in};
@@ -82,6 +83,17 @@ impl Session {
         Self { document, ui, folders, preferences, kept, pending: None, recovered: None, warned_of: None }
     }
 
+    /// Whether the user has not decided yet about what a crash left behind.
+    pub fn has_undecided_recovery(&self) -> bool {
+        self.recovered.is_some()
+    }
+
+    /// Lets go of textures, as after another device was opened: they are made again when they are seen.
+    pub fn reload_textures(&mut self, context: &egui::Context) {
+        self.ui.library.forget_textures();
+        self.ui.snapshots.reload(context);
+    }
+
     /// Asks whether to take what a crash left behind.
     pub fn offer_recovery(&mut self, preset: Preset) {
         self.ui.dialog = Some(Dialog::Recover { name: preset.name.clone() });
@@ -118,7 +130,7 @@ impl Session {
         };
         self.preferences.zoom = context.zoom_factor();
         if self.preferences != self.kept {
-            if let Err(error) = self.preferences.save(&self.folders.state.join(PREFERENCES)) {
+            if let Err(error) = self.preferences.save(&self.folders.state.join(PREFERENCES), &self.kept) {
                 self.ui.toasts.error(format!("Preferences are not kept: {error}"));
             }
             self.kept = self.preferences.clone();
@@ -166,7 +178,7 @@ impl Session {
                 if let Some(sky) = self.other_sky(&source) {
                     let from = self.document.preset().scene.clone();
                     let (to, name) = (sky.preset.scene, sky.preset.name);
-                    self.ui.library.morph = Some(ui::Morph { from, to, name, share: 0.0 });
+                    self.ui.library.morph = Some(ui::Morph { last: Some(from.clone()), from, to, name, share: 0.0 });
                 }
                 None
             }
@@ -174,17 +186,18 @@ impl Session {
             Request::Recover(taken) => {
                 if let Some(preset) = self.recovered.take().filter(|_| taken) {
                     let mut recovered = Document::new(preset, self.document.quality().clone());
-                    recovered.mark_recovered();
-                    self.document.replace_by(recovered, "recover");
+                    recovered.mark_unsaved();
+                    self.replace_document(recovered, "recover");
                 }
                 Some(Request::Recover(taken))
             }
-            Request::Paste { key, text } => {
-                if let Err(error) = self.paste(key.as_deref(), &text) {
+            Request::Paste { key: Some(key), text } => {
+                if let Err(error) = self.paste(&key, &text) {
                     self.ui.toasts.error(error);
                 }
                 None
             }
+            Request::Paste { key: None, .. } => self.unless_unsaved(request),
             Request::Browse(_)
             | Request::Screenshot
             | Request::Snapshot
@@ -206,6 +219,7 @@ impl Session {
         let before = match &request {
             Request::New => "start a new sky",
             Request::Quit => "quit",
+            Request::Paste { .. } => "paste another sky",
             _ => "open another sky",
         };
         self.ui.dialog = Some(Dialog::Unsaved { before: before.to_owned() });
@@ -218,11 +232,15 @@ impl Session {
         let quality = self.document.quality().clone();
         match request {
             Request::New => {
-                self.document.replace_by(Document::new(Preset::new("", Scene::default()), quality), "new");
+                self.replace_document(Document::new(Preset::new("", Scene::default()), quality), "new");
                 None
             }
             Request::Open(path) => {
                 self.open(&path);
+                None
+            }
+            Request::Paste { key: None, text } => {
+                self.paste_sky(&text);
                 None
             }
             other => Some(other),
@@ -304,6 +322,12 @@ impl Session {
         }
     }
 
+    /// Edits another document; what was begun with the one before is over.
+    fn replace_document(&mut self, other: Document, step: impl Into<String>) {
+        self.ui.library.morph = None;
+        self.document.replace_by(other, step);
+    }
+
     /// Another sky, of which something is wanted; says why there is none.
     fn other_sky(&mut self, source: &Path) -> Option<Sky> {
         files::open(source).map_err(|error| self.ui.toasts.error(error)).ok()
@@ -324,7 +348,7 @@ impl Session {
                 }
                 let opened = document_of(sky, self.document.quality().clone());
                 let step = format!("open {}", opened.name());
-                self.document.replace_by(opened, step);
+                self.replace_document(opened, step);
             }
             Err(error) => self.ui.toasts.error(error),
         }
@@ -336,7 +360,8 @@ impl Session {
             .extension()
             .and_then(|ending| ending.to_str())
             .is_some_and(|ending| ["png", "exr"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
-        if !is_picture || files::open(path).is_ok() {
+        let holds_none = matches!(files::open(path), Err(FileError::Export(ExportError::NoPreset { .. })));
+        if !is_picture || !holds_none {
             return self.perform(Action::Ask(Request::Open(path.to_owned())));
         }
         let mut scene = self.document.preset().scene.clone();
@@ -348,17 +373,23 @@ impl Session {
         None
     }
 
-    /// Takes over text from the clipboard: values below a key, or a whole sky. On an error nothing has changed.
-    fn paste(&mut self, key: Option<&str>, text: &str) -> Result<(), String> {
+    /// Edits a sky from the clipboard, which no file holds; says why it cannot be read.
+    fn paste_sky(&mut self, text: &str) {
+        match Preset::from_ron(text, "the clipboard") {
+            Ok(preset) => {
+                let mut pasted = Document::new(preset, self.document.quality().clone());
+                pasted.mark_unsaved();
+                self.replace_document(pasted, "paste a sky");
+            }
+            Err(error) => self.ui.toasts.error(format!("Nothing was pasted: {error}")),
+        }
+    }
+
+    /// Takes over text from the clipboard: values below a key. On an error nothing has changed.
+    fn paste(&mut self, key: &str, text: &str) -> Result<(), String> {
         let failed = |error: &dyn std::fmt::Display| format!("Nothing was pasted: {error}");
-        let Some(key) = key else {
-            let preset = Preset::from_ron(text, "the clipboard").map_err(|error| failed(&error))?;
-            let pasted = Document::new(preset, self.document.quality().clone());
-            self.document.replace_by(pasted, "paste a sky");
-            return Ok(());
-        };
         let (mut scene, mut quality) = (self.document.preset().scene.clone(), self.document.quality().clone());
-        let action = if let Some(key) = key.strip_prefix("quality.") {
+        let action = if let Some(key) = key.strip_prefix("quality").map(|rest| rest.trim_start_matches('.')) {
             clip::paste(&mut quality, key, text).map_err(|error| failed(&error))?;
             Action::EditQuality { key: key.to_owned(), quality: Box::new(quality) }
         } else {

@@ -9,7 +9,7 @@ use super::truth::{CompareJob, Outcome, Truths, Wishes};
 use crate::gpu::Gpu;
 use crate::plan::{Forced, FramePlan, Integrator};
 use crate::render::{Progress, RenderError, Renderer};
-use crate::scene::{Frame, Output, Projection, Quality, Scene, UpdateFraction};
+use crate::scene::{DomainKind, Frame, Output, Projection, Quality, Scene, UpdateFraction};
 use crate::ui::{LabState, Picked, Readout};
 
 /// Work sent to the device at a time. The panels' frame comes after at most one of these.
@@ -80,6 +80,28 @@ pub(super) struct Viewport {
     budget_ms: Option<f64>,
 }
 
+/// The angle that a pixel spans in the middle of a picture so many pixels high, in degrees.
+fn pixel_deg(scene: &Scene, height_px: u32) -> f32 {
+    let height = height_px.max(1) as f32;
+    match scene.camera.projection {
+        Projection::Perspective => {
+            (2.0 * scene.camera.half_tangents([height_px.max(1); 2])[1] / height).atan().to_degrees()
+        }
+        Projection::Equirect => 180.0 / height,
+        Projection::Dome => 90.0 / height,
+    }
+}
+
+/// Height above the sea of a place whose height over the plane below the eye is known, so far from the eye's vertical.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
+fn altitude(scene: &Scene, up_m: f32, away_m: f32) -> f32 {
+    if scene.domain.kind != DomainKind::Shell {
+        return up_m;
+    }
+    let radius = f64::from(scene.domain.planet_radius_m);
+    ((radius + f64::from(up_m)).hypot(f64::from(away_m)) - radius) as f32
+}
+
 impl Viewport {
     /// A viewport without a picture.
     pub(super) fn new(gpu: &Gpu) -> Result<Self, RenderError> {
@@ -122,10 +144,11 @@ impl Viewport {
         let up = if towards.y.abs() > 0.99 { glam::Vec3::X } else { glam::Vec3::Y };
         scene.camera.look(towards, up);
         scene.camera.projection = Projection::Perspective;
-        scene.camera.field_of_view_deg = 1.0;
+        scene.camera.field_of_view_deg = pixel_deg(&inputs.scene, inputs.size[1]);
         // A point has no neighbours that could throw streaks on it.
         scene.sunshafts.strength = 0.0;
-        let quality = Quality { update: UpdateFraction::Full, pixel_samples: 1, ..inputs.quality.clone() };
+        let own = inputs.quality.clone();
+        let quality = Quality { update: UpdateFraction::Full, pixel_samples: 1, resolution_scale: 1.0, ..own };
         let point = Frame {
             scene: &scene,
             quality: &quality,
@@ -152,7 +175,10 @@ impl Viewport {
             display: None,
             transmittance: picture.clouds.first().map_or(1.0, |cloud| cloud[3]),
             distance_m,
-            position_m: distance_m.map(|far| std::array::from_fn(|axis| eye[axis] + far * towards[axis])),
+            position_m: distance_m.map(|far| {
+                let [east, up, south] = std::array::from_fn(|axis| eye[axis] + far * towards[axis]);
+                [east, altitude(&scene, up, far * towards.x.hypot(towards.z)), south]
+            }),
         }))
     }
 

@@ -51,6 +51,7 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         recovery,
         live: None,
         lose_device_after: lose_device_after(),
+        waiting: Vec::new(),
         given_up: None,
         failure: None,
     };
@@ -81,6 +82,8 @@ struct App {
     live: Option<Live>,
     /// When the device is taken away, to try what then happens.
     lose_device_after: Option<Duration>,
+    /// What wants the picture of the sky as it is now, once it is finished.
+    waiting: Vec<Request>,
     /// Gives up the still that is being rendered.
     given_up: Option<Arc<AtomicBool>>,
     /// Why the program ends.
@@ -311,8 +314,10 @@ impl App {
         if self.session.document.is_playing() || live.hands.are_busy() {
             wake = sooner(wake, now + 5 * POLL);
         }
-        if is_idle {
+        // A picture that never comes to rest is taken as it is.
+        if is_idle || self.session.document.is_playing() {
             self.inspect();
+            self.take_pictures();
         }
         let refined = self.refine(is_idle);
         if refined.has_worked {
@@ -389,12 +394,15 @@ impl App {
     fn fulfil(&mut self, event_loop: &ActiveEventLoop, request: Request) {
         match request {
             Request::Quit => {
-                self.recovery.clear();
+                // What a crash left stays until somebody says what becomes of it.
+                if !self.session.has_undecided_recovery() {
+                    self.recovery.clear();
+                }
                 event_loop.exit();
             }
             Request::Browse(purpose) => self.browse(purpose),
             Request::Screenshot => self.screenshot(),
-            Request::Snapshot => self.take_snapshot(),
+            Request::Snapshot | Request::KeepPicture(_) => self.wait_for_picture(request),
             Request::CopyPicture => self.copy_picture(),
             Request::CopySystem => {
                 if let Some(live) = &self.live {
@@ -402,7 +410,6 @@ impl App {
                     self.session.ui.toasts.info("What this machine is lies in the clipboard");
                 }
             }
-            Request::KeepPicture(preset) => self.keep_picture(&preset),
             Request::Export(export) => self.render_still(export),
             Request::GiveUp => self.give_up_still(),
             Request::Lab(wish) => self.measure(wish),
@@ -529,8 +536,9 @@ impl App {
             self.fail(event_loop, anyhow::anyhow!("the graphics device was lost twice; unsaved work was kept"));
             return;
         }
-        if let Err(error) = live.rebuild(&self.adapter) {
-            self.fail(event_loop, error);
+        match live.rebuild(&self.adapter) {
+            Ok(()) => self.session.reload_textures(live.egui.context()),
+            Err(error) => self.fail(event_loop, error),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What would keep the window waiting: file dialogs, stills, and writing pictures. Each runs on a thread of its own
 //! and reports back through the event loop.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +16,7 @@ use crate::export::exr::ExrOptions;
 use crate::files::{About, save_exr, save_layers, save_png};
 use crate::gpu::Gpu;
 use crate::render::Renderer;
-use crate::scene::{Frame, Output, Preset, Projection, Quality};
+use crate::scene::{Frame, Output, Preset, Quality};
 
 /// What reaches the event loop from outside the window.
 #[derive(Debug)]
@@ -47,7 +48,7 @@ pub(super) enum Message {
     NoFileDialog,
     /// How much of a picture is done, 0 to 1, and since when it is worked on.
     Progress(f32, Instant),
-    /// A still is finished: it was written, or given up, or why it could not be rendered.
+    /// A still is over: it was written, or given up, or why it could not be rendered.
     Still(Result<Option<PathBuf>, String>),
     /// A picture was written.
     Written(PathBuf),
@@ -147,15 +148,27 @@ impl Worker {
     pub(super) fn still(&self, job: StillJob) -> Arc<AtomicBool> {
         let given_up = Arc::new(AtomicBool::new(false));
         let (asked, proxy, begun) = (Arc::clone(&given_up), self.proxy.clone(), Instant::now());
-        self.spawn("still", move || {
+        let failed = self.proxy.clone();
+        let work = move || {
             let mut proceed = |share| {
                 // As above: whoever does not wait has closed the window.
                 let is_heard = proxy.send_event(Event::Worker(Message::Progress(share, begun))).is_ok();
                 is_heard && !asked.load(Ordering::Relaxed)
             };
-            let is_written = still(&job, &mut proceed).map_err(|error| format!("{error:#}"));
-            Message::Still(is_written.map(|is_written| is_written.then_some(job.export.path)))
-        });
+            // Whatever happens, the window has to hear that it is over.
+            let outcome = catch_unwind(AssertUnwindSafe(|| still(&job, &mut proceed)));
+            let is_written = match outcome {
+                Ok(result) => result.map_err(|error| format!("{error:#}")),
+                Err(_) => Err("the still could not be rendered: its thread panicked".to_owned()),
+            };
+            let path = job.export.path;
+            let _ = proxy
+                .send_event(Event::Worker(Message::Still(is_written.map(|is_written| is_written.then_some(path)))));
+        };
+        if let Err(error) = std::thread::Builder::new().name("still".to_owned()).spawn(work) {
+            let said = Err(format!("no thread for a still: {error}"));
+            let _ = failed.send_event(Event::Worker(Message::Still(said)));
+        }
         given_up
     }
 }
@@ -188,18 +201,21 @@ fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result
         Still::CloudsExr => Output::CloudsAlone,
         Still::Png => Output::Display,
     };
-    let mut scene = job.preset.scene.clone();
-    if job.export.is_panorama {
-        scene.camera.projection = Projection::Equirect;
-    }
-    let frame = Frame { scene: &scene, quality: &job.quality, size: job.export.size, time_secs: job.time_secs, output };
+    let frame = Frame {
+        scene: &job.preset.scene,
+        quality: &job.quality,
+        size: job.export.size,
+        time_secs: job.time_secs,
+        output,
+    };
     let path = &job.export.path;
     if job.export.still == Still::LayersExr {
-        let Some(layers) = renderer.layers(&frame, proceed)? else { return Ok(false) };
+        let Some(layers) = renderer.layers(&frame, proceed)?.filter(|_| proceed(1.0)) else { return Ok(false) };
         save_layers(path, layers, &job.about(), ExrOptions::default())?;
         return Ok(true);
     }
-    let Some(still) = renderer.still_while(&frame, proceed)? else { return Ok(false) };
+    // The last moment to give it up; then it is written.
+    let Some(still) = renderer.still_while(&frame, proceed)?.filter(|_| proceed(1.0)) else { return Ok(false) };
     if job.export.still == Still::Png {
         let (size, pixels) = renderer.rgba8_of(&still.into_display())?;
         save_png(path, size, &pixels, &job.about())?;

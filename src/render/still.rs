@@ -36,7 +36,7 @@ pub struct Still {
 }
 
 /// How often it is looked whether shaders have been compiled, and whether a still is still wanted.
-const COMPILE_POLL: Duration = Duration::from_millis(10);
+const COMPILE_POLL: Duration = Duration::from_millis(50);
 const PROCEED_EVERY: Duration = Duration::from_millis(150);
 
 /// What a picture beside the window's frames has to itself.

@@ -6,9 +6,9 @@ use super::param::Params;
 /// Begins the line that names the section.
 const SECTION: &str = "# ";
 
-/// What a parameter or a whole section holds, as text; empty if there is none with this key.
+/// What a parameter or a whole section holds, as text; empty if there is none with this key. No key is everything.
 pub fn copy<P: Params + Clone>(root: &P, key: &str) -> String {
-    let within = format!("{key}.");
+    let within = if key.is_empty() { String::new() } else { format!("{key}.") };
     let entries = edit::keys(root);
     let line = |key: &str, entry: &Entry| format!("{key}={}\n", entry.value);
     if let Some(entry) = entries.iter().find(|entry| entry.key == key) {
@@ -16,7 +16,11 @@ pub fn copy<P: Params + Clone>(root: &P, key: &str) -> String {
     }
     let inside = entries.iter().filter_map(|entry| Some(line(entry.key.strip_prefix(&within)?, entry)));
     let lines: String = inside.collect();
-    if lines.is_empty() { lines } else { format!("{SECTION}{key}\n{lines}") }
+    if lines.is_empty() {
+        lines
+    } else {
+        format!("{SECTION}{}\n{lines}", if key.is_empty() { "everything" } else { key })
+    }
 }
 
 /// Puts copied text into a parameter or a section, which may be another one of the same kind: all of it or nothing. A value
@@ -31,7 +35,8 @@ pub fn paste<P: Params + Clone>(root: &mut P, key: &str, text: &str) -> Result<(
     if is_section {
         for line in lines {
             let (below, value) = edit::split(line)?;
-            edit::set(&mut edited, &format!("{key}.{below}"), value)?;
+            let whole = if key.is_empty() { below.to_owned() } else { format!("{key}.{below}") };
+            edit::set(&mut edited, &whole, value)?;
         }
     } else {
         let line = lines.next().unwrap_or_default();
@@ -63,6 +68,10 @@ mod tests {
         assert_eq!(scene.layers[1].top_m, 777.0);
         paste(&mut scene, "layers.1.base_m", " 42 ").expect("a value alone");
         assert_eq!(scene.layers[1].base_m, 42.0);
+        let mut other = Scene::default();
+        let whole = copy(&Scene { layers: other.layers.clone(), ..scene.clone() }, "");
+        paste(&mut other, "", &whole).expect("everything");
+        assert_eq!((&other.wind, &other.weather), (&scene.wind, &scene.weather));
         assert_eq!(copy(&scene, "nothing"), "");
     }
 

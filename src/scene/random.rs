@@ -11,7 +11,13 @@ pub fn randomise(root: &mut impl Params, seed: u32) {
 /// stay, and so do parameters and groups whose key is `kept`. The same seed gives the same values.
 pub fn vary(root: &mut impl Params, seed: u32, amount: f32, kept: &dyn Fn(&str) -> bool) {
     let stream = Stream::new(u64::from(seed) ^ 0x6e65_7068_6f73);
-    root.visit(&mut Vary { stream, amount: f64::from(amount.clamp(0.0, 1.0)), kept, prefix: String::new() });
+    root.visit(&mut Vary {
+        stream,
+        amount: f64::from(amount.clamp(0.0, 1.0)),
+        kept,
+        is_frozen: false,
+        prefix: String::new(),
+    });
 }
 
 /// Moves values near where they are: those of logarithmic parameters by a factor of up to four, others by up to half of
@@ -20,6 +26,8 @@ struct Vary<'k> {
     stream: Stream,
     amount: f64,
     kept: &'k dyn Fn(&str) -> bool,
+    /// Within a group that is kept: values are drawn all the same, so that keeping one changes no other.
+    is_frozen: bool,
     prefix: String,
 }
 
@@ -30,20 +38,22 @@ impl Vary<'_> {
 
     fn below(&mut self, name: &str, visit: &mut dyn FnMut(&mut dyn Visitor)) {
         let key = self.key(name);
-        if (self.kept)(&key) {
-            return;
-        }
-        let outer = std::mem::replace(&mut self.prefix, format!("{key}."));
+        let is_frozen = self.is_frozen || (self.kept)(&key);
+        let outer =
+            (std::mem::replace(&mut self.prefix, format!("{key}.")), std::mem::replace(&mut self.is_frozen, is_frozen));
         visit(self);
-        self.prefix = outer;
+        (self.prefix, self.is_frozen) = outer;
+    }
+
+    fn moves(&self, name: &str) -> bool {
+        !self.is_frozen && !(self.kept)(&self.key(name))
     }
 }
 
 impl Visitor for Vary<'_> {
     fn float(&mut self, info: &Info<f32>, value: &mut f32) {
-        // Drawn even where it is not used, so that keeping one parameter does not change the others.
         let drawn = (2.0 * self.stream.unit() - 1.0) * self.amount;
-        let Some(range) = info.range.as_ref().filter(|_| !(self.kept)(&self.key(info.name))) else { return };
+        let Some(range) = info.range.as_ref().filter(|_| self.moves(info.name)) else { return };
         let (low, high, now) = (f64::from(*range.start()), f64::from(*range.end()), f64::from(*value));
         let moved = if info.logarithmic {
             now * 4.0_f64.powf(drawn)
@@ -56,7 +66,7 @@ impl Visitor for Vary<'_> {
     fn count(&mut self, info: &Info<u32>, value: &mut u32) {
         let drawn = self.stream.below(1 << 20);
         let is_seed = info.name.ends_with("seed") && self.amount > 0.0;
-        let Some(range) = info.range.as_ref().filter(|_| is_seed && !(self.kept)(&self.key(info.name))) else { return };
+        let Some(range) = info.range.as_ref().filter(|_| is_seed && self.moves(info.name)) else { return };
         *value = u32::try_from(drawn).unwrap_or(0).clamp(*range.start(), *range.end());
     }
 
@@ -196,6 +206,9 @@ mod tests {
             let ratio = scene.layers[0].shape_size_m / begun.layers[0].shape_size_m;
             assert!((0.25..=4.0).contains(&ratio), "{ratio}");
         }
+        let mut all = begun.clone();
+        vary(&mut all, 7, 0.3, &|_| false);
+        assert_eq!(varied(7, 0.3).display, all.display, "keeping one section changes no other");
         assert_eq!(varied(7, 0.3), varied(7, 0.3), "the same seed");
         assert_ne!(varied(7, 0.3), varied(8, 0.3), "another seed");
     }

@@ -86,9 +86,14 @@ impl Sun {
         };
         let minutes = || (0..MINUTES).step_by(5).map(f32::from);
         let Some((wanted, climbs)) = moment.elevation() else {
-            let heights = minutes().filter_map(|minute| Some((at(minute)?, minute)));
-            let (_, noon) = heights.max_by(|one, other| one.0.total_cmp(&other.0))?;
-            return Some(noon / 60.0);
+            let highest = |from: f32, step: f32, count: u16| {
+                let minutes = (0..count).map(|index| from + step * f32::from(index));
+                let heights = minutes.filter_map(|minute| Some((at(minute)?, minute)));
+                heights.max_by(|one, other| one.0.total_cmp(&other.0)).map(|(_, minute)| minute)
+            };
+            // To six seconds; the sun stands still there.
+            let near = highest(0.0, 5.0, MINUTES / 5)?;
+            return Some(highest((near - 5.0).max(0.0), 0.1, 101)? / 60.0);
         };
         let is_past = |minute: f32| Some((at(minute)? >= wanted) == climbs);
         let begin = minutes().find(|minute| is_past(*minute) == Some(false) && is_past(*minute + 5.0) == Some(true))?;

@@ -55,7 +55,13 @@ pub(super) fn menu(name: &Response, key: &str, title: &str, modified: bool, rese
 
 /// Does what menus and keys wanted since the last frame. `copied` is the last text that was copied here, as no program may
 /// look into the system's clipboard unasked.
-pub(super) fn take(ui: &Ui, copied: &mut String, (scene, quality): (&Scene, &Quality), actions: &mut Vec<Action>) {
+/// Nothing is done by keys while something is asked.
+pub(super) fn take(
+    ui: &Ui,
+    (copied, is_asking): (&mut String, bool),
+    (scene, quality): (&Scene, &Quality),
+    actions: &mut Vec<Action>,
+) {
     let pointed: Option<String> = ui.data_mut(|data| data.remove_temp(pointed_id()));
     let wish: Wish = ui.data_mut(|data| data.remove_temp(wish_id())).unwrap_or_default();
     let copy = |copied: &mut String, key: &str| {
@@ -75,7 +81,7 @@ pub(super) fn take(ui: &Ui, copied: &mut String, (scene, quality): (&Scene, &Qua
         }
         Wish::Nothing => {}
     }
-    if ui.ctx().egui_wants_keyboard_input() {
+    if ui.ctx().egui_wants_keyboard_input() || is_asking {
         return;
     }
     let (is_copied, pasted) = ui.input(|input| {

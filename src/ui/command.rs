@@ -283,9 +283,12 @@ pub(super) fn take(ui: &mut Ui, state: &mut State, document: &Document) -> Vec<A
     let mut actions = Vec::new();
     let asking = state.palette.is_open || state.dialog.is_some() && state.dialog != Some(Dialog::Shortcuts);
     let typing = ui.ctx().egui_wants_keyboard_input();
+    let has_text = ui.ctx().text_edit_focused();
     for command in Command::all() {
         let free = command == Command::HideAll && state.hide_all;
-        if asking || typing && command.yields_to_focus() && !free {
+        // Text has steps of its own to undo, and its keys go through words.
+        let is_of_text = matches!(command, Command::Undo | Command::Redo | Command::ViewBack | Command::ViewForth);
+        if asking || has_text && is_of_text || typing && command.yields_to_focus() && !free {
             continue;
         }
         if ui.input_mut(|input| input.consume_shortcut(&command.shortcut())) {

@@ -213,6 +213,9 @@ pub fn show(
         history::show(ui.ctx(), area, document, (&mut state.show_history, &mut actions));
     }
     palette::show(ui, state, document, &mut actions);
+    let held = (&document.preset().scene, document.quality());
+    let is_asking = state.dialog.is_some() || state.palette.is_open;
+    clipboard::take(ui, (&mut state.panel.copied, is_asking), held, &mut actions);
     dialogs::show(ui.ctx(), state, document, &mut actions);
     state.toasts.show(ui.ctx(), area);
     actions

@@ -118,7 +118,8 @@ pub(super) fn show(ui: &Ui, state: &mut State, document: &Document, actions: &mu
         Choice::Command(command) => command.run(ui, state, document, actions),
         Choice::Preset(source) => actions.push(Action::Ask(Request::Open(source.clone()))),
         Choice::Parameter(key) => {
-            state.show_panel = true;
+            (state.show_panel, state.hide_all) = (true, false);
+            (state.panel.simple, state.panel.modified_only) = (false, false);
             state.panel.filter.clone_from(key);
         }
     }

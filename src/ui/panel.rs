@@ -22,7 +22,7 @@ pub struct PanelState {
     /// Whether only the few parameters are shown that make most of a sky.
     pub simple: bool,
     /// What was copied here last.
-    copied: String,
+    pub(super) copied: String,
 }
 
 /// Draws the panel for a copy of the scene and the quality, and returns what the user did to them.
@@ -57,7 +57,6 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: 
         }
         ui.add_space(12.0);
     });
-    clipboard::take(ui, &mut state.copied, (scene, quality), &mut actions);
     actions
 }
 
@@ -127,12 +126,14 @@ fn quality_section(ui: &mut Ui, filter: Filter<'_>, quality: &Quality, actions: 
     }
 }
 
+const SUNDIAL: &str = "sundial.section";
+
 /// The sun on a dial, above all rows.
 fn sundial_section(ui: &mut Ui, scene: &mut Scene, actions: &mut Vec<Action>) {
     let heading = Heading { title: "Sundial", doc: "The sun’s place by a drag, by the hour, or by a city." };
     let mut changed = None;
     let mut outer = Rows::new(ui, Filter::default(), String::new());
-    outer.section(heading, "sundial.section", None, &mut |ui, _| changed = super::sundial::show(ui, scene));
+    outer.section(heading, SUNDIAL, None, &mut |ui, _| changed = super::sundial::show(ui, scene));
     if let Some(key) = changed {
         actions.push(Action::EditScene { key: key.to_owned(), scene: Box::new(scene.clone()) });
     }
@@ -208,11 +209,15 @@ impl<'u> Rows<'u> {
             row::name(ui, &response, &format!("{} section", heading.title), key);
             toggle = response.clicked();
             let mut reset = false;
-            clipboard::menu(&response, key, heading.title, buttons.is_some_and(|(_, modified)| modified), &mut reset);
-            pressed = reset.then_some(HeaderButton::Reset);
-            if response.contains_pointer() {
-                clipboard::note_pointed(ui, key);
+            // The sundial is no section of parameters.
+            if key != SUNDIAL {
+                let modified = buttons.is_some_and(|(_, modified)| modified);
+                clipboard::menu(&response, key, heading.title, modified, &mut reset);
+                if response.contains_pointer() {
+                    clipboard::note_pointed(ui, key);
+                }
             }
+            pressed = reset.then_some(HeaderButton::Reset);
             let Some((buttons, modified)) = buttons else { return };
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 for button in buttons {

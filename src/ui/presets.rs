@@ -91,6 +91,8 @@ pub struct Morph {
     pub name: String,
     /// How far, 0 to 1.
     pub share: f32,
+    /// The sky between them that was shown last.
+    pub last: Option<Scene>,
 }
 
 impl Library {
@@ -107,6 +109,11 @@ impl Library {
             }
         }
         (self.builtin, self.user, self.folder) = (found.builtin, found.user, found.folder);
+    }
+
+    /// Lets go of all decoded pictures, as after another device was opened.
+    pub fn forget_textures(&mut self) {
+        self.textures.clear();
     }
 
     /// The picture of a preset, decoded now if that is still `allowed`.
@@ -202,8 +209,14 @@ fn morph_row(ui: &mut Ui, library: &mut Library, document: &Document, actions: &
     let slider = ui.add(egui::Slider::new(&mut state.share, 0.0..=1.0).show_value(false));
     super::row::name(ui, &slider, "Morph", "presets.morph");
     if slider.changed() {
-        let scene =
-            Scene { camera: document.preset().scene.camera.clone(), ..morph(&state.from, &state.to, state.share) };
+        let now = &document.preset().scene;
+        let is_ours = |last: &Scene| Scene { camera: now.camera.clone(), ..last.clone() } == *now;
+        if !state.last.as_ref().is_some_and(is_ours) {
+            // What was edited meanwhile is where it goes on from.
+            state.from = now.clone();
+        }
+        let scene = Scene { camera: now.camera.clone(), ..morph(&state.from, &state.to, state.share) };
+        state.last = Some(scene.clone());
         actions.push(Action::EditScene { key: format!("towards {}", state.name), scene: Box::new(scene) });
     }
     if is_over {

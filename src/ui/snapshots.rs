@@ -10,7 +10,7 @@ use crate::scene::param::Choice as _;
 use crate::scene::{Preset, Quality, edit};
 
 /// Older ones make room.
-const MOST: usize = 24;
+const MOST: usize = 12;
 /// Height of a thumbnail, in points.
 const THUMBNAIL: f32 = 62.0;
 /// Height of the strip, in points.
@@ -39,6 +39,8 @@ pub struct Snapshot {
     pub preset: Preset,
     /// How it was computed.
     pub quality: Quality,
+    path: Option<std::path::PathBuf>,
+    saved: Preset,
     size: [u32; 2],
     rgba8: Vec<u8>,
     texture: TextureHandle,
@@ -99,8 +101,25 @@ impl SnapshotState {
         self.taken += 1;
         let name = format!("{} {}", self.taken, document.name());
         let texture = context.load_texture(&name, image(size, &rgba8), egui::TextureOptions::LINEAR);
-        let (preset, quality) = (document.preset().clone(), document.quality().clone());
-        self.list.push(Snapshot { name, preset, quality, size, rgba8, texture });
+        self.list.push(Snapshot {
+            name,
+            preset: document.preset().clone(),
+            quality: document.quality().clone(),
+            path: document.path().cloned(),
+            saved: document.saved().clone(),
+            size,
+            rgba8,
+            texture,
+        });
+    }
+
+    /// Makes all textures again, as after another device was opened.
+    pub fn reload(&mut self, context: &Context) {
+        for snapshot in &mut self.list {
+            let picture = image(snapshot.size, &snapshot.rgba8);
+            snapshot.texture = context.load_texture(&snapshot.name, picture, egui::TextureOptions::LINEAR);
+        }
+        self.difference = None;
     }
 
     /// All of them, the oldest first.
@@ -129,8 +148,8 @@ impl SnapshotState {
         self.difference = None;
     }
 
-    /// Compares the chosen snapshot with the picture as it is now. Pictures of other sizes are compared pixel by pixel where
-    /// they are nearest.
+    /// Compares the chosen snapshot with the picture as it is now. Pictures of other sizes are compared as high as each other,
+    /// middle on middle, which is how a lens shows the same things; beyond the snapshot's sides there is no difference.
     pub fn show_difference(&mut self, context: &Context, (size, rgba8): ([u32; 2], &[u8])) {
         let Some(snapshot) = self.chosen.and_then(|index| self.list.get(index)) else { return };
         let [width, height] = size.map(|side| side as usize);
@@ -138,11 +157,18 @@ impl SnapshotState {
             return;
         }
         let theirs = snapshot.size.map(|side| side as usize);
+        let scale = theirs[1] as f32 / height as f32;
         let mut pixels = Vec::with_capacity(width * height);
         for y in 0..height {
             for x in 0..width {
                 let now = 4 * (y * width + x);
-                let then = 4 * ((y * theirs[1] / height) * theirs[0] + x * theirs[0] / width);
+                let across = (x as f32 + 0.5 - 0.5 * width as f32) * scale + 0.5 * theirs[0] as f32;
+                if across < 0.0 || across >= theirs[0] as f32 {
+                    pixels.push(Color32::from_gray(128));
+                    continue;
+                }
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
+                let then = 4 * ((y * theirs[1] / height) * theirs[0] + across as usize);
                 let channel = |c: usize| {
                     let difference = i32::from(rgba8[now + c]) - i32::from(snapshot.rgba8[then + c]);
                     u8::try_from((128 + GAIN * difference).clamp(0, 255)).unwrap_or(128)
@@ -224,6 +250,8 @@ pub(super) fn show(ui: &mut Ui, state: &mut SnapshotState, document: &Document, 
                 name: format!("restore {}", snapshot.name),
                 preset: Box::new(snapshot.preset.clone()),
                 quality: Box::new(snapshot.quality.clone()),
+                path: snapshot.path.clone(),
+                saved: Box::new(snapshot.saved.clone()),
             });
         }
         None => {}
@@ -272,14 +300,27 @@ fn thumbnail(
 /// What differs between a snapshot and the document, in lines.
 fn differences(snapshot: &Snapshot, document: &Document) -> Vec<String> {
     const MOST_LINES: usize = 12;
-    let now = edit::keys(&document.preset().scene);
-    let then = edit::keys(&snapshot.preset.scene);
+    let all = |scene, quality| {
+        let mut entries = edit::keys(scene);
+        entries.extend(edit::keys(quality).into_iter().map(|mut entry| {
+            entry.key.insert_str(0, "quality.");
+            entry
+        }));
+        entries
+    };
+    let now = all(&document.preset().scene, document.quality());
+    let then = all(&snapshot.preset.scene, &snapshot.quality);
+    let value = |entries: &[edit::Entry], key: &str| {
+        let entry = entries.iter().find(|entry| entry.key == key);
+        entry.map_or_else(|| "none".to_owned(), |entry| entry.value.clone())
+    };
+    let added = now.iter().filter(|entry| then.iter().all(|other| other.key != entry.key));
     let mut lines: Vec<String> = then
         .iter()
+        .chain(added)
         .filter_map(|entry| {
-            let other = now.iter().find(|other| other.key == entry.key);
-            let other = other.map_or("none", |other| other.value.as_str());
-            (other != entry.value).then(|| format!("{}: {} here, {other} now", entry.key, entry.value))
+            let [here, now] = [value(&then, &entry.key), value(&now, &entry.key)];
+            (here != now).then(|| format!("{}: {here} here, {now} now", entry.key))
         })
         .collect();
     if lines.is_empty() {

@@ -3,7 +3,7 @@
 use egui::{Color32, Pos2, Rect, Sense, Stroke, Ui, Vec2};
 
 use super::row;
-use crate::scene::{CITIES, Moment, Scene, SunPlacement};
+use crate::scene::{CITIES, Moment, Scene, Sun, SunPlacement};
 
 /// Side of the dial, in points.
 const SIDE: f32 = 132.0;
@@ -19,8 +19,7 @@ pub(super) fn show(ui: &mut Ui, scene: &mut Scene) -> Option<&'static str> {
         }
         ui.vertical(|ui| {
             ui.horizontal_wrapped(|ui| {
-                for moment in Moment::ALL {
-                    let hour = scene.sun.hour_of(moment);
+                for (moment, hour) in Moment::ALL.into_iter().zip(hours(ui, &scene.sun)) {
                     let button = ui.add_enabled(hour.is_some(), egui::Button::new(moment.title()));
                     let hint = hour.map_or_else(|| "Not on this day at this place".to_owned(), clock);
                     if button.on_hover_text(&hint).on_disabled_hover_text(&hint).clicked()
@@ -59,6 +58,20 @@ pub(super) fn show(ui: &mut Ui, scene: &mut Scene) -> Option<&'static str> {
         });
     });
     changed
+}
+
+/// The hours of all moments, computed anew only for another day or place: each takes some hundred positions of the sun.
+fn hours(ui: &Ui, sun: &Sun) -> [Option<f32>; Moment::ALL.len()] {
+    let key = [sun.latitude_deg, sun.longitude_deg, sun.utc_offset_h, sun.day as f32].map(f32::to_bits);
+    let id = egui::Id::unique("hours of the sun");
+    if let Some((known, hours)) = ui.data(|data| data.get_temp::<([u32; 4], [Option<f32>; 6])>(id))
+        && known == key
+    {
+        return hours;
+    }
+    let hours = Moment::ALL.map(|moment| sun.hour_of(moment));
+    ui.data_mut(|data| data.insert_temp(id, (key, hours)));
+    hours
 }
 
 /// An hour as `6:05`.

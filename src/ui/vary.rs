@@ -36,8 +36,12 @@ impl Default for VaryState {
 impl VaryState {
     /// The sky of the seed.
     fn varied(&mut self, scene: &Scene) -> Scene {
+        let camera = &scene.camera;
         let base = match self.last.take() {
-            Some(last) if last.1 == *scene => last.0,
+            // Flights do not count.
+            Some(last) if Scene { camera: camera.clone(), ..last.1.clone() } == *scene => {
+                Scene { camera: camera.clone(), ..last.0 }
+            }
             _ => scene.clone(),
         };
         let mut varied = base.clone();

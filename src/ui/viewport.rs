@@ -93,7 +93,10 @@ pub(super) fn show(
                 beside(ui, place, snapshots);
             }
             let place = fitted(rect, picture.size);
-            if let (true, true, Some(at)) = (inspector.is_on, response.clicked(), response.interact_pointer_pos()) {
+            // Side by side there are two pictures, and neither fills the place.
+            let is_whole = truth.comparison != Comparison::SideBySide;
+            let clicked = inspector.is_on && is_whole && response.clicked();
+            if let (true, Some(at)) = (clicked, response.interact_pointer_pos()) {
                 let inside = (at - place.min) / place.size();
                 inspector.wish = Some([inside.x.clamp(0.0, 1.0), inside.y.clamp(0.0, 1.0)]);
                 inspector.picked = None;
@@ -176,15 +179,18 @@ fn compared(ui: &Ui, rect: Rect, truth: &mut TruthState) -> bool {
 fn beside(ui: &Ui, place: Rect, state: &mut SnapshotState) {
     let Some((snapshot, picture)) = state.chosen() else { return };
     let painter = ui.painter_at(place);
+    // As high as the picture and in its middle: a lens shows the same things there, whatever the width.
+    let [width, height] = picture.size.map(|side| side.max(1) as f32);
+    let theirs = Rect::from_center_size(place.center(), Vec2::new(place.height() * width / height, place.height()));
     match state.beside {
         Beside::Flip if !snapshots::is_flipped(ui, state) => {}
         Beside::Flip => {
-            image(&painter, place, picture.texture);
+            image(&painter, theirs, picture.texture);
             caption(&painter, place, &snapshot.name, Align2::CENTER_TOP);
         }
         Beside::Wipe => {
             let left = snapshots::left_of(place, state.divider);
-            image(&painter.with_clip_rect(left), place, picture.texture);
+            image(&painter.with_clip_rect(left), theirs, picture.texture);
             caption(&painter.with_clip_rect(left), left, &snapshot.name, Align2::RIGHT_TOP);
             divider(ui, place, ("Divider between snapshot and picture", "snapshots.divider"), &mut state.divider);
         }

@@ -214,9 +214,12 @@ fn recent_files_and_favourites_come_back() {
 fn a_dropped_picture_becomes_the_weather_map() {
     let mut editor = Editor::new();
     let map = editor._folder.path().join("map.png");
-    let png = include_bytes!("../../thumbnails/thesis.png");
-    // Cut before its texts, it is a picture without a sky.
-    std::fs::write(&map, &png[..60]).expect("written");
+    let broken = editor._folder.path().join("broken.png");
+    std::fs::write(&broken, &include_bytes!("../../thumbnails/thesis.png")[..60]).expect("written");
+    editor.harness.state_mut().drop_file(&broken);
+    assert_eq!(editor.scene().weather.layers[0].image.0, "", "a damaged file is no map");
+    assert!(!editor.toasts().is_empty(), "and that is said");
+    image::RgbImage::from_pixel(8, 8, image::Rgb([90, 0, 0])).save(&map).expect("written");
     editor.harness.state_mut().drop_file(&map);
     assert_eq!(editor.scene().weather.layers[0].image.0, map.display().to_string());
     editor.harness.state_mut().drop_file(Path::new("stormy"));
@@ -327,4 +330,31 @@ fn a_click_asks_for_a_point_only_while_points_are_inspected() {
     assert!((wish[0] - 0.25).abs() < 0.1 && (wish[1] - 0.75).abs() < 0.2, "{wish:?}");
     editor.press(egui::Key::I);
     assert!(!editor.harness.state().ui.inspector.is_on && editor.harness.state().ui.inspector.wish.is_none());
+}
+
+#[test]
+fn a_pasted_sky_asks_before_work_is_lost_and_is_not_saved_yet() {
+    let mut editor = Editor::new();
+    editor.type_number("weather.coverage", "0.7");
+    let text = Preset::new("From elsewhere", Scene::default()).to_ron();
+    editor.harness.hover_at(editor.harness.state().ui.viewport.rect.center());
+    editor.press(egui::Key::Escape);
+    editor.harness.event(egui::Event::Paste(text));
+    editor.harness.run();
+    assert_eq!(editor.document().name(), "Test sky", "there is something to lose");
+    editor.click_label("Discard");
+    assert_eq!(editor.document().name(), "From elsewhere");
+    assert!(editor.document().is_modified(), "no file holds it");
+}
+
+#[test]
+fn text_has_its_own_undo() {
+    let mut editor = Editor::new();
+    editor.type_number("weather.coverage", "0.7");
+    editor.click("filter");
+    editor.harness.event(egui::Event::Text("sun".to_owned()));
+    editor.harness.run();
+    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    editor.harness.run();
+    assert_eq!(editor.scene().weather.coverage, 0.7, "the sky is as it was");
 }

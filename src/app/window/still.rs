@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::super::action::Export;
 use super::super::worker::StillJob;
 use super::App;
-use crate::scene::{Quality, UpdateFraction};
+use crate::scene::{Projection, Quality, UpdateFraction};
 use crate::ui::Busy;
 
 impl App {
@@ -23,13 +23,12 @@ impl App {
         let level = export.level.map_or_else(|| document.quality().clone(), Quality::level);
         // A still has no pictures before it to take pixels from, and the size asked for is that of the file.
         let quality = Quality { update: UpdateFraction::Full, resolution_scale: 1.0, ..level };
-        let job = StillJob {
-            gpu: live.gpu.clone(),
-            preset: document.preset().clone(),
-            quality,
-            time_secs: document.time_secs(),
-            export,
-        };
+        let mut preset = document.preset().clone();
+        if export.is_panorama {
+            // The file says what it shows.
+            preset.scene.camera.projection = Projection::Equirect;
+        }
+        let job = StillJob { gpu: live.gpu.clone(), preset, quality, time_secs: document.time_secs(), export };
         let text = "Rendering a still".to_owned();
         self.session.ui.busy = Some(Busy { text, progress: Some((0.0, None)), can_stop: true });
         self.given_up = Some(self.worker.still(job));

@@ -8,6 +8,7 @@ use super::super::egui_glue::Place;
 use super::super::truth::{Compared, Outcome, Wishes};
 use super::{App, Live};
 use crate::app::Session;
+use crate::app::action::Request;
 use crate::plan::Integrator;
 use crate::render::RenderError;
 use crate::ui::TruthView;
@@ -46,6 +47,7 @@ impl App {
         let Some(live) = &mut self.live else { return Outcome::default() };
         if live.viewport.has_moved_on() {
             self.session.ui.truth.is_kept = false;
+            self.session.ui.inspector.picked = None;
         }
         // What is being measured is not disturbed.
         if !is_idle || self.session.ui.lab.is_running() {
@@ -93,8 +95,29 @@ impl App {
 }
 
 impl App {
+    /// Remembers what wants a picture: the one that is shown may still be that of another sky.
+    pub(super) fn wait_for_picture(&mut self, request: Request) {
+        if self.live.as_ref().is_none_or(|live| live.viewport.renderer().display().is_none()) {
+            if request == Request::Snapshot {
+                self.session.ui.toasts.error("There is no picture to keep yet; wait for the first one");
+            }
+            return;
+        }
+        self.waiting.push(request);
+    }
+
+    /// Gives the finished picture to those that wait for it.
+    pub(super) fn take_pictures(&mut self) {
+        for request in std::mem::take(&mut self.waiting) {
+            match request {
+                Request::KeepPicture(preset) => self.keep_picture(&preset),
+                _ => self.take_snapshot(),
+            }
+        }
+    }
+
     /// Keeps the sky with the picture as the window shows it.
-    pub(super) fn take_snapshot(&mut self) {
+    fn take_snapshot(&mut self) {
         let Some(live) = &mut self.live else { return };
         match live.shown_rgba8(&self.session) {
             Ok((_, pixels)) if pixels.is_empty() => {
@@ -148,7 +171,7 @@ impl App {
     }
 
     /// Keeps what the window shows as the small picture of a preset.
-    pub(super) fn keep_picture(&mut self, preset: &std::path::Path) {
+    fn keep_picture(&mut self, preset: &std::path::Path) {
         if let Some(live) = &self.live
             && let Ok((size, pixels)) = live.shown_rgba8(&self.session)
         {
