@@ -52,6 +52,7 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         live: None,
         lose_device_after: lose_device_after(),
         waiting: Vec::new(),
+        is_working: true,
         given_up: None,
         failure: None,
     };
@@ -84,6 +85,8 @@ struct App {
     lose_device_after: Option<Duration>,
     /// What wants the picture of the sky as it is now, once it is finished.
     waiting: Vec<Request>,
+    /// Whether the picture of the sky as it is now is not finished yet.
+    is_working: bool,
     /// Gives up the still that is being rendered.
     given_up: Option<Arc<AtomicBool>>,
     /// Why the program ends.
@@ -314,6 +317,7 @@ impl App {
         if self.session.document.is_playing() || live.hands.are_busy() {
             wake = sooner(wake, now + 5 * POLL);
         }
+        self.is_working = !is_idle;
         // A picture that never comes to rest is taken as it is.
         if is_idle || self.session.document.is_playing() {
             self.inspect();

@@ -103,6 +103,9 @@ impl App {
             }
             return;
         }
+        if request == Request::Snapshot && self.is_working {
+            self.session.ui.toasts.info("The snapshot is taken when the picture is finished");
+        }
         self.waiting.push(request);
     }
 
