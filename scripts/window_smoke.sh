@@ -47,24 +47,22 @@ done
 say "the window was there after $((SECONDS - start)) s"
 
 shown=${CARGO_TARGET_DIR:-target}/debug/examples/framebuffer
-start=$SECONDS
-until "$shown" "$folder/screen/Xvfb_screen0" "$folder/window.png" 2>"$folder/shown.log"; do
-    is_alive || fail "the editor ended: $(tail -n 20 "$folder/out.log")"
-    ((SECONDS - start < 60)) || fail "the window shows no picture: $(cat "$folder/shown.log")"
-    sleep 1
-done
+wait_for_picture() {
+    local when=$1 start=$SECONDS
+    until "$shown" "$folder/screen/Xvfb_screen0" "$folder/window.png" 2>"$folder/shown.log"; do
+        is_alive || fail "the editor ended $when: $(tail -n 20 "$folder/out.log")"
+        ((SECONDS - start < 60)) || fail "the window shows no picture $when: $(cat "$folder/shown.log")"
+        sleep 1
+    done
+}
+wait_for_picture "at its start"
 
 # A resize is what breaks surfaces; then it works on for a while.
 window=$(xdotool search --onlyvisible --name Nephoscope | head -n 1)
 xdotool windowsize "$window" 900 640
 sleep 4
 # So narrow it shows no gallery: what has many colours now is the sky.
-start=$SECONDS
-until "$shown" "$folder/screen/Xvfb_screen0" "$folder/window.png" 2>"$folder/shown.log"; do
-    is_alive || fail "the editor ended after its window was resized: $(tail -n 20 "$folder/out.log")"
-    ((SECONDS - start < 60)) || fail "nothing is shown after a resize: $(cat "$folder/shown.log")"
-    sleep 1
-done
+wait_for_picture "after a resize"
 ! grep -q "panicked" "$folder/out.log" || fail "a thread panicked: $(cat "$folder/out.log")"
 if [[ -n $picture ]]; then cp "$folder/window.png" "$picture"; fi
 say "the window works"

@@ -10,6 +10,8 @@ pub struct Builtin {
     pub name: &'static str,
     /// The text of that file.
     pub ron: &'static str,
+    /// A small picture of it as PNG, made by `scripts/gallery.sh`.
+    pub picture: &'static [u8],
 }
 
 impl Builtin {
@@ -24,7 +26,11 @@ impl Builtin {
 
 macro_rules! builtins {
     ($($name:literal,)*) => {
-        &[$( Builtin { name: $name, ron: include_str!(concat!("../../presets/", $name, ".ron")) }, )*]
+        &[$( Builtin {
+            name: $name,
+            ron: include_str!(concat!("../../presets/", $name, ".ron")),
+            picture: include_bytes!(concat!("../../thumbnails/", $name, ".png")),
+        }, )*]
     };
 }
 
