@@ -55,4 +55,5 @@ export_and_check perspective ', half openexr' fair_weather
 export_and_check clouds ', half openexr' broken_sunset --clouds-only
 export_and_check equirect ', half openexr' moonlit --projection equirect
 export_and_check float ', float openexr' stratocumulus --depth float --compression piz
-say "4 exported files are sound"
+export_and_check lossy ', half openexr' clear_puffs --compression dwaa
+say "5 exported files are sound"

@@ -113,6 +113,8 @@ enum CompressionArg {
     Zips,
     /// Wavelets.
     Piz,
+    /// Cosines, lossy but for opacity and data.
+    Dwaa,
     /// None.
     None,
 }
@@ -154,6 +156,7 @@ impl RenderArgs {
             CompressionArg::Zip => ExrCompression::Zip,
             CompressionArg::Zips => ExrCompression::Zips,
             CompressionArg::Piz => ExrCompression::Piz,
+            CompressionArg::Dwaa => ExrCompression::Dwaa,
             CompressionArg::None => ExrCompression::None,
         };
         ExrOptions { depth, compression }

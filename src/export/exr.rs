@@ -115,7 +115,8 @@ pub enum ExrDepth {
     Float,
 }
 
-/// Lossless codecs. ZIP is the smallest for clean skies; PIZ wins only on grain.
+/// Codecs. ZIP is the smallest lossless one for clean skies; PIZ wins only on grain. DWAA loses what is hardly seen: colours
+/// by their channels' names, never opacity or data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExrCompression {
     /// Deflate over blocks of 16 lines.
@@ -125,6 +126,8 @@ pub enum ExrCompression {
     Zips,
     /// Wavelets over blocks of 32 lines.
     Piz,
+    /// Lossy cosines over blocks of 32 lines, at the usual level of 45.
+    Dwaa,
     /// As it is.
     None,
 }
@@ -135,6 +138,7 @@ impl From<ExrCompression> for exrs::Compression {
             ExrCompression::Zip => Self::ZIP16,
             ExrCompression::Zips => Self::ZIP1,
             ExrCompression::Piz => Self::PIZ,
+            ExrCompression::Dwaa => Self::DWAA(Some(45.0)),
             ExrCompression::None => Self::Uncompressed,
         }
     }
@@ -422,6 +426,27 @@ mod tests {
             let (folder, written) = write(&picture(), ExrOptions { depth: ExrDepth::Float, compression });
             assert_eq!(written.unwrap(), ExrDepth::Float);
             assert_eq!(read_exr(&folder.path().join("sky.exr")).unwrap(), picture(), "{compression:?}");
+        }
+    }
+
+    #[test]
+    fn dwaa_loses_little_light_and_no_data() {
+        let size = 64_u16;
+        let smooth = |x: u16, y: u16| 0.5 + 0.4 * (f32::from(x) * 0.1).sin() * (f32::from(y) * 0.07).cos();
+        let places = || (0..size).flat_map(|y| (0..size).map(move |x| (x, y)));
+        let rgba =
+            places().map(|(x, y)| [smooth(x, y), smooth(y, x), 2.0 * smooth(x, y), f32::from(x) / 64.0]).collect();
+        let depth = places().map(|(x, y)| 20_000.0 + f32::from(x) / 3.0 + f32::from(y)).collect();
+        let side = u32::from(size);
+        let image = FloatImage { width: side, height: side, rgba, depth: Some(depth), crop: None };
+        let options = ExrOptions { compression: ExrCompression::Dwaa, depth: ExrDepth::Half };
+        let (folder, written) = write(&image, options);
+        written.expect("written");
+        let back = read_exr(&folder.path().join("sky.exr")).expect("read");
+        assert_eq!(back.depth, image.depth, "distances are data");
+        for (seen, expected) in back.rgba.iter().zip(&image.rgba) {
+            assert!(seen.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.02), "{seen:?}, not {expected:?}");
+            assert_eq!(seen[3], f16::from_f32(expected[3]).to_f32(), "opacity is lossless");
         }
     }
 
