@@ -267,9 +267,9 @@ fn export(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>) -> Fate
     });
     ui.checkbox(&mut form.is_panorama, "All directions (longitude across, latitude down)")
         .on_hover_text("For lighting with the sky; the camera’s place counts, and its heading is the middle");
-    // Light and opacity of each pixel, and as much again while it is written.
-    let bytes = if form.still == Still::LayersExr { 340.0 } else { 180.0 };
-    let megabytes = f64::from(form.width) * f64::from(form.height) * bytes / 1e6;
+    // Measured on a software adapter, whose memory is the processor's: so much for each pixel, and the program itself.
+    let bytes = if form.still == Still::LayersExr { 220.0 } else { 120.0 };
+    let megabytes = 300.0 + f64::from(form.width) * f64::from(form.height) * bytes / 1e6;
     ui.weak(format!("Takes about {megabytes:.0} MB of memory"));
     ui.horizontal_wrapped(|ui| {
         ui.label("Quality");

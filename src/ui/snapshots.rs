@@ -338,7 +338,7 @@ pub(super) fn is_flipped(ui: &Ui, state: &SnapshotState) -> bool {
     state.beside == Beside::Flip && !ui.ctx().egui_wants_keyboard_input() && ui.input(|input| input.key_down(Key::B))
 }
 
-/// The part of `place` where the snapshot is seen, and its caption.
+/// The part of `place` left of a divider at a share of its width.
 pub(super) fn left_of(place: Rect, share: f32) -> Rect {
     Rect::from_min_max(place.min, egui::pos2(place.left() + place.width() * share, place.bottom()))
 }

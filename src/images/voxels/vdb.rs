@@ -1,5 +1,5 @@
 //! `OpenVDB` files (format version 224) of voxel grids, written without the library: one fog volume in a tree of 5, 4 and 3
-//! bits, zipped, sparse by leaves of 8³ voxels. What the library reads is what `tests/vdb.py` checks.
+//! bits, zipped, sparse by leaves of 8³ voxels. What the library reads is what `tests/fixtures/vdb.py` checks.
 
 use std::io::{self, Write};
 
