@@ -5,6 +5,7 @@ mod common;
 mod gpu {
     mod clearance;
     mod density;
+    mod display;
     mod effects;
     mod faults;
     mod frames;

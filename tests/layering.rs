@@ -17,8 +17,9 @@ const LAYERS: [(&str, &[&str]); 13] = [
     ("export", &["images"]),
     ("files", &["scene", "export", "images", "render", "gpu"]),
     ("lab", &["scene", "plan", "render", "gpu", "reference"]),
-    // The plan, the timings and the lab's results are read, never made; of the editor, what it shows and what it is told.
-    ("ui", &["scene", "plan", "gpu", "lab", "app::action", "app::document", "app::preferences"]),
+    // The plan, the timings, the light and the lab's results are read, never made; of the editor, what it shows and what it is
+    // told.
+    ("ui", &["scene", "plan", "gpu", "lab", "render::meter", "app::action", "app::document", "app::preferences"]),
     ("cli", &["app", "export", "files", "gpu", "images", "lab", "plan", "render", "scene", "shader", "ui"]),
     ("app", &["export", "files", "gpu", "images", "lab", "plan", "render", "scene", "shader", "ui"]),
 ];

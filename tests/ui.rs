@@ -15,6 +15,7 @@ use nephoscope::ui::{Comparison, Dialog, LabView, Measured, Phase, Picture, Read
 
 mod ui {
     mod studio;
+    mod time;
 }
 
 /// The panels with a session, and what was left for the window to do.

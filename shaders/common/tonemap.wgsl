@@ -63,3 +63,18 @@ fn agx(light: vec3f, contrast: f32, saturation: f32) -> vec3f {
 #endif
   return clamp(outset * saturated, vec3f(0.0), vec3f(1.0));
 }
+
+// Stops relative to middle grey as bands of colour, display-encoded; the table is `FALSE_COLOURS` in `scene/place.rs`.
+fn false_colour(light: vec3f) -> vec3f {
+  let stops = log2(max(luminance709(light), 1e-12) / 0.18);
+  let ends = array(-6.0, -4.0, -2.0, -1.0, -0.5, 0.5, 1.0, 2.0, 3.0, 4.5);
+  var colours = array(
+    vec3f(38.0, 10.0, 64.0), vec3f(40.0, 50.0, 160.0), vec3f(30.0, 120.0, 200.0), vec3f(30.0, 150.0, 150.0),
+    vec3f(40.0, 140.0, 70.0), vec3f(128.0, 128.0, 128.0), vec3f(120.0, 190.0, 80.0), vec3f(220.0, 220.0, 70.0),
+    vec3f(240.0, 160.0, 50.0), vec3f(220.0, 60.0, 40.0), vec3f(255.0, 255.0, 255.0));
+  var band = 0u;
+  for (var end = 0u; end < 10u; end++) {
+    band += u32(stops >= ends[end]);
+  }
+  return colours[band] / 255.0;
+}

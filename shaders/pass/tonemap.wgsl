@@ -30,6 +30,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     case 1u: {
       colour = srgb_encoded(graded(khronos_neutral(light), display.contrast, display.saturation));
     }
+    case 3u: {
+      colour = false_colour(light);
+    }
     default: {
       colour = srgb_encoded(clamp(graded(light, display.contrast, display.saturation), vec3f(0.0), vec3f(1.0)));
     }

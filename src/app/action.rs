@@ -7,7 +7,7 @@ use crate::lab::accuracy::Setting;
 use crate::lab::bench::Rounds;
 use crate::lab::suite::SuiteKind;
 use crate::render::truth::Goal;
-use crate::scene::{Camera, Preset, Quality, QualityLevel, Scene};
+use crate::scene::{Animation, Camera, Preset, Quality, QualityLevel, Scene};
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +47,26 @@ pub enum Action {
     Play(bool),
     /// Back to the beginning of time.
     ResetTime,
+    /// To a time, in seconds since the scene began.
+    Seek(f64),
     /// Seconds of the scene per second of the clock.
-    SetTimeFactor(f64),
+    SetSpeed(f64),
+    /// A parameter gets a key, where time is now, for what it is.
+    SetKey(String),
+    /// Keys were edited.
+    EditAnimation {
+        /// What was done to them.
+        step: String,
+        /// All keys.
+        animation: Box<Animation>,
+    },
+    /// The sun goes from dawn to dusk.
+    DayLapse {
+        /// Length of the film in seconds of the clock.
+        film_secs: f64,
+        /// Seconds of the scene per second of the clock: how fast clouds go.
+        speed: f64,
+    },
     /// The sky of a snapshot, its camera included.
     Restore {
         /// What the step is called.
@@ -253,6 +271,18 @@ pub struct Export {
 }
 
 impl Action {
+    /// Whether it changes the scene as somebody would by hand, so that what has keys gets another one.
+    pub(super) fn is_edit_of_scene(&self) -> bool {
+        matches!(
+            self,
+            Self::EditScene { .. }
+                | Self::MoveCamera(_)
+                | Self::ResetCamera
+                | Self::TurnSun { .. }
+                | Self::ChangeExposure(_)
+        )
+    }
+
     /// What the action is called in histories and messages.
     pub fn name(&self) -> String {
         match self {
@@ -268,7 +298,11 @@ impl Action {
             Self::Play(true) => "play".to_owned(),
             Self::Play(false) => "pause".to_owned(),
             Self::ResetTime => "reset the time".to_owned(),
-            Self::SetTimeFactor(_) => "set the speed of time".to_owned(),
+            Self::Seek(_) => "go to a time".to_owned(),
+            Self::SetSpeed(_) => "set the speed of time".to_owned(),
+            Self::SetKey(key) => format!("keyframe {key}"),
+            Self::EditAnimation { step, .. } => step.clone(),
+            Self::DayLapse { .. } => "time-lapse of a day".to_owned(),
             Self::Restore { name, .. } => name.clone(),
             Self::Undo => "undo".to_owned(),
             Self::Redo => "redo".to_owned(),

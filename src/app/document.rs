@@ -4,10 +4,7 @@ use std::path::PathBuf;
 
 use super::action::Action;
 use super::history::{History, Scope, State, Views};
-use crate::scene::{Camera, Frame, Output, Preset, Quality, QualityLevel, SunPlacement};
-
-/// Slowest and fastest that time may run, in seconds of the scene per second of the clock.
-pub const TIME_FACTOR_RANGE: std::ops::RangeInclusive<f64> = 0.0..=10_000.0;
+use crate::scene::{Animation, Camera, Frame, Output, Preset, Quality, QualityLevel, SPEED_RANGE, SunPlacement};
 
 /// The sky being edited, how it is computed, and where it came from.
 #[derive(Clone, Debug)]
@@ -18,7 +15,6 @@ pub struct Document {
     saved: Preset,
     time_secs: f64,
     playing: bool,
-    time_factor: f64,
     history: History,
     views: Views,
 }
@@ -33,7 +29,6 @@ impl Document {
             path: None,
             time_secs: 0.0,
             playing: false,
-            time_factor: 1.0,
             history: History::default(),
             views: Views::default(),
         }
@@ -75,14 +70,14 @@ impl Document {
         self.playing
     }
 
-    /// Seconds of the scene per second of the clock.
-    pub fn time_factor(&self) -> f64 {
-        self.time_factor
+    /// What changes with time.
+    pub fn animation(&self) -> &Animation {
+        &self.preset.animation
     }
 
     /// Whether there is anything to save.
     pub fn is_modified(&self) -> bool {
-        self.preset != self.saved
+        if self.preset.animation.is_moving() { self.preset.at_rest() != self.saved } else { self.preset != self.saved }
     }
 
     /// Name and unsaved mark, for the title of the window.
@@ -104,8 +99,16 @@ impl Document {
     /// Lets time run for some seconds of the clock.
     pub fn advance_clock(&mut self, seconds: f64) {
         if self.playing {
-            self.time_secs += seconds * self.time_factor;
+            let (time_secs, has_ended) = self.preset.animation.after(self.time_secs, seconds);
+            self.playing = !has_ended;
+            self.seek(time_secs);
         }
+    }
+
+    /// Goes to a time of the scene.
+    fn seek(&mut self, time_secs: f64) {
+        self.time_secs = time_secs;
+        self.preset.play(time_secs);
     }
 
     /// The preset as it was opened or saved last.
@@ -116,7 +119,7 @@ impl Document {
     /// Remembers that the preset as it is now lies in `path`.
     pub fn mark_saved(&mut self, path: PathBuf) {
         self.path = Some(path);
-        self.saved = self.preset.clone();
+        self.saved = self.preset.at_rest();
     }
 
     /// Makes the document count as unsaved whatever it holds, as after a recovery or a paste.
@@ -144,17 +147,30 @@ impl Document {
                 let now = &self.preset.scene.camera;
                 let camera = if *action == Action::ViewBack { self.views.back(now) } else { self.views.forth(now) };
                 self.preset.scene.camera = camera.unwrap_or_else(|| self.preset.scene.camera.clone());
+                self.preset.animation.absorb(&self.preset.scene, self.time_secs);
             }
-            Action::MoveCamera(_) | Action::ResetCamera => {
+            Action::MoveCamera(_) | Action::ResetCamera if !self.has_camera_keys() => {
                 let before = self.preset.scene.camera.clone();
                 self.change(action);
                 if self.preset.scene.camera != before {
                     self.views.leave(&before, *action == Action::ResetCamera);
                 }
             }
+            Action::Play(_) | Action::ResetTime | Action::Seek(_) => self.change(action),
             _ => {
                 let before = self.state();
                 self.change(action);
+                let (animation, layers) = (&mut self.preset.animation, &self.preset.scene.layers);
+                if matches!(action, Action::EditScene { .. }) {
+                    animation.follow("layers", &before.preset.scene.layers, layers);
+                    let maps = [&before.preset.scene, &self.preset.scene].map(|scene| &scene.weather.layers);
+                    animation.follow("weather.layers", maps[0], maps[1]);
+                }
+                if action.is_edit_of_scene() {
+                    // What is edited while it has keys gets one at this time.
+                    animation.absorb(&self.preset.scene, self.time_secs);
+                }
+                self.preset.play(self.time_secs);
                 if self.preset != before.preset || self.quality != before.quality {
                     let scope = match action {
                         Action::Restore { .. } => Scope::Document,
@@ -211,11 +227,17 @@ impl Document {
                 Scope::Camera => {}
                 Scope::Document => {
                     (self.path, self.saved) = (state.path, state.saved);
-                    (self.time_secs, self.playing, self.time_factor) = state.time;
+                    (self.time_secs, self.playing) = state.time;
                     self.views = Views::default();
                 }
             }
+            // Time goes on: what has keys is as they say now.
+            self.preset.play(self.time_secs);
         }
+    }
+
+    fn has_camera_keys(&self) -> bool {
+        self.preset.animation.tracks.iter().any(|track| track.key.starts_with("camera."))
     }
 
     fn state(&self) -> State {
@@ -224,7 +246,7 @@ impl Document {
             quality: self.quality.clone(),
             path: self.path.clone(),
             saved: self.saved.clone(),
-            time: (self.time_secs, self.playing, self.time_factor),
+            time: (self.time_secs, self.playing),
         }
     }
 
@@ -239,7 +261,7 @@ impl Document {
             Action::EditQuality { quality, .. } => self.quality = (**quality).clone(),
             Action::SetQualityLevel(level) => self.quality = Quality::level(*level),
             Action::MoveCamera(camera) => scene.camera = camera.clone(),
-            Action::ResetCamera => scene.camera = self.saved.scene.camera.clone(),
+            Action::ResetCamera => scene.camera = self.saved.at(self.time_secs).camera,
             Action::TurnSun { elevation_deg, azimuth_deg } => self.turn_sun(*elevation_deg, *azimuth_deg),
             Action::ChangeExposure(stops) => {
                 scene.display.exposure_ev = (scene.display.exposure_ev + stops).clamp(-12.0, 24.0);
@@ -252,9 +274,20 @@ impl Document {
             }
             Action::Rename(name) => self.preset.name.clone_from(name),
             Action::Play(playing) => self.playing = *playing,
-            Action::ResetTime => self.time_secs = 0.0,
-            Action::SetTimeFactor(factor) => {
-                self.time_factor = factor.clamp(*TIME_FACTOR_RANGE.start(), *TIME_FACTOR_RANGE.end());
+            Action::ResetTime => self.seek(0.0),
+            Action::Seek(time_secs) => self.seek(*time_secs),
+            Action::SetSpeed(speed) => {
+                self.preset.animation.speed = speed.clamp(*SPEED_RANGE.start(), *SPEED_RANGE.end());
+            }
+            Action::SetKey(key) => self.preset.animation.set_key(&self.preset.scene, key, self.time_secs),
+            Action::EditAnimation { animation, .. } => self.preset.animation = (**animation).clone(),
+            Action::DayLapse { film_secs, speed } => {
+                if let Some(day) = self.preset.animation.day(&self.preset.scene.sun, *film_secs, *speed) {
+                    self.preset.scene.sun.placement = SunPlacement::Hour;
+                    self.preset.animation = day;
+                    self.playing = true;
+                    self.time_secs = 0.0;
+                }
             }
             Action::Undo
             | Action::Redo
@@ -418,7 +451,7 @@ mod tests {
         document.advance_clock(2.0);
         assert_eq!(document.time_secs(), 0.0);
         document.apply(&Action::Play(true));
-        document.apply(&Action::SetTimeFactor(10.0));
+        document.apply(&Action::SetSpeed(10.0));
         document.advance_clock(2.0);
         assert_eq!(document.time_secs(), 20.0);
         document.apply(&Action::ResetTime);
@@ -435,5 +468,66 @@ mod tests {
         document.apply(&Action::TurnSun { elevation_deg: 0.0, azimuth_deg: 0.0 });
         let after = document.preset().scene.towards_sun();
         assert!(before.abs_diff_eq(after, 1e-4), "{before} became {after}");
+    }
+
+    #[test]
+    fn what_has_keys_is_edited_by_keys_and_undone_with_them() {
+        let mut document = document();
+        let begun = document.preset().clone();
+        let key = "weather.coverage".to_owned();
+        edit(&mut document, 0.2);
+        document.apply(&Action::SetKey(key.clone()));
+        document.apply(&Action::Seek(10.0));
+        edit(&mut document, 0.8);
+        assert_eq!(document.animation().tracks[0].keys.len(), 2, "the edit became a key");
+        document.apply(&Action::Seek(5.0));
+        assert!((coverage(&document) - 0.5).abs() < 1e-6, "half way: {}", coverage(&document));
+        document.mark_saved("moving.ron".into());
+        document.apply(&Action::Seek(7.0));
+        assert!(!document.is_modified(), "time alone leaves nothing to save");
+        assert_eq!(document.steps().0.len(), 3, "{:?}", document.steps().0);
+        document.apply(&Action::Undo);
+        assert!((coverage(&document) - 0.2).abs() < 1e-6, "one key is left, at any time");
+        document.apply(&Action::TravelHistory(-2));
+        assert_eq!(*document.preset(), begun, "as it began");
+        document.apply(&Action::TravelHistory(3));
+        document.apply(&Action::Seek(10.0));
+        assert_eq!(coverage(&document), 0.8, "and all of it again");
+        let mut scene = document.preset().scene.clone();
+        scene.layers.push(scene.layers[0].clone());
+        document.apply(&Action::EditScene { key: "layers".to_owned(), scene: Box::new(scene.clone()) });
+        document.apply(&Action::SetKey("layers.1.density".to_owned()));
+        scene.layers.remove(0);
+        scene.layers[0].density = 0.123;
+        document.apply(&Action::EditScene { key: "layers".to_owned(), scene: Box::new(scene) });
+        assert!(document.animation().tracks.iter().all(|track| track.key != "layers.1.density"), "there is one layer");
+    }
+
+    #[test]
+    fn a_flight_with_keys_is_a_step() {
+        let mut document = document();
+        document.apply(&Action::SetKey("camera.east_m".to_owned()));
+        document.apply(&Action::Seek(4.0));
+        let far = Camera { east_m: 400.0, ..document.preset().scene.camera.clone() };
+        document.apply(&Action::MoveCamera(far));
+        document.apply(&Action::Seek(2.0));
+        assert!((document.preset().scene.camera.east_m - 200.0).abs() < 1.0, "on the way");
+        document.apply(&Action::Undo);
+        document.apply(&Action::Seek(4.0));
+        assert_eq!(document.preset().scene.camera.east_m, 0.0, "the flight is undone");
+    }
+
+    #[test]
+    fn a_day_plays_at_once_and_ends_where_it_should() {
+        let mut document = document();
+        document.apply(&Action::DayLapse { film_secs: 10.0, speed: 2.0 });
+        assert!(document.is_playing() && document.time_secs() == 0.0);
+        let dawn = document.preset().scene.towards_sun().y;
+        document.advance_clock(5.0);
+        assert!(document.preset().scene.towards_sun().y > dawn + 0.3, "noon");
+        let once = Animation { repeats: false, ..document.animation().clone() };
+        document.apply(&Action::EditAnimation { step: "once".to_owned(), animation: Box::new(once) });
+        document.advance_clock(50.0);
+        assert_eq!((document.time_secs(), document.is_playing()), (20.0, false));
     }
 }

@@ -28,8 +28,8 @@ pub(super) struct State {
     pub(super) quality: Quality,
     pub(super) path: Option<PathBuf>,
     pub(super) saved: Preset,
-    /// Seconds since the scene began, whether time runs, and how fast.
-    pub(super) time: (f64, bool, f64),
+    /// Seconds since the scene began, and whether time runs.
+    pub(super) time: (f64, bool),
 }
 
 /// A step with the document on its other side: before it among those that can be undone, after it among the others.

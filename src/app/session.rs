@@ -142,6 +142,12 @@ impl Session {
         match action {
             Action::Ask(request) => self.request(request),
             action => {
+                let sun = &self.document.preset().scene.sun;
+                if matches!(action, Action::DayLapse { .. }) && sun.daylight().is_none() {
+                    let say = "The sun does not rise and set on this day at this place: choose others in section Sun";
+                    self.ui.toasts.error(say);
+                    return None;
+                }
                 self.document.apply(&action);
                 None
             }

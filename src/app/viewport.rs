@@ -8,7 +8,7 @@ use super::statistics::Statistics;
 use super::truth::{CompareJob, Outcome, Truths, Wishes};
 use crate::gpu::Gpu;
 use crate::plan::{Forced, FramePlan, Integrator};
-use crate::render::{Progress, RenderError, Renderer};
+use crate::render::{LightHistogram, Progress, RenderError, Renderer};
 use crate::scene::{DomainKind, Frame, Output, Projection, Quality, Scene, UpdateFraction};
 use crate::ui::{LabState, Picked, Readout};
 
@@ -279,6 +279,11 @@ impl Viewport {
             self.broken = first.map(|broken| format!("{broken}; `nephoscope verify` says whether it is the driver"));
         }
         Ok(())
+    }
+
+    /// How much of the last picture has which luminance; `None` while there is none, or another is under way.
+    pub(super) fn light_histogram(&mut self) -> Result<Option<LightHistogram>, RenderError> {
+        self.renderer.light_histogram()
     }
 
     /// What was found broken since this was asked before.

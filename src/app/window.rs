@@ -1,5 +1,6 @@
 //! The window and its event loop: who is woken when, and what is drawn then.
 
+mod meter;
 mod still;
 mod truth;
 
@@ -53,6 +54,8 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         lose_device_after: lose_device_after(),
         waiting: Vec::new(),
         is_working: true,
+        metered: Instant::now(),
+        is_metered: false,
         given_up: None,
         failure: None,
     };
@@ -87,6 +90,9 @@ struct App {
     waiting: Vec<Request>,
     /// Whether the picture of the sky as it is now is not finished yet.
     is_working: bool,
+    /// When the light of the picture was measured last, and whether that was of the picture that is shown.
+    metered: Instant,
+    is_metered: bool,
     /// Gives up the still that is being rendered.
     given_up: Option<Arc<AtomicBool>>,
     /// Why the program ends.
@@ -289,7 +295,7 @@ impl App {
         if !live.is_drawable() {
             return wake;
         }
-        let mut is_idle = false;
+        let (mut is_idle, mut is_new) = (false, false);
         let size = self.session.ui.viewport.size_px(live.egui.context().pixels_per_point());
         let mut fastest = FASTEST_PANELS;
         if self.session.ui.viewport.rect.width() >= 1.0 && self.session.ui.viewport.rect.height() >= 1.0 {
@@ -305,6 +311,7 @@ impl App {
                         self.session.ui.toasts.error(broken);
                     }
                     live.is_new = true;
+                    is_new = true;
                     live.draw_within(Duration::ZERO);
                     wake = Some(now);
                 }
@@ -323,6 +330,7 @@ impl App {
             self.inspect();
             self.take_pictures();
         }
+        self.meter(is_new);
         let refined = self.refine(is_idle);
         if refined.has_worked {
             fastest = FASTEST_PANELS_BESIDE_WORK;

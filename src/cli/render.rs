@@ -43,7 +43,8 @@ pub(super) struct RenderArgs {
     /// Camera: east,height,south,heading,pitch[,field of view] in metres and degrees.
     #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
     camera: Option<String>,
-    /// Frames of a sequence, such as 1-100x2 or 1,5,9; frame N shows the time `--time` + N / `--fps`.
+    /// Frames of a sequence, such as 1-100x2 or 1,5,9; frame N shows the time `--time` + N / `--fps`, times
+    /// the sky's speed of time (`animation.speed`, 1 unless the sky says otherwise).
     #[arg(long, value_name = "RANGE")]
     frames: Option<String>,
     /// Frames per second of a sequence.
@@ -201,8 +202,12 @@ impl Job {
         quality.resolution_scale = 1.0;
         let mut preset = sky.preset;
         edit::apply(&args.edits.sets, &mut preset.scene, &mut quality)?;
+        // What is said here holds at all times.
+        let set: Vec<&str> = args.edits.sets.iter().filter_map(|set| Some(edit::split(set).ok()?.0)).collect();
+        preset.animation.tracks.retain(|track| !set.contains(&track.key.as_str()));
         if let Some(camera) = &args.camera {
             args::set_camera(&mut preset.scene, camera)?;
+            preset.animation.tracks.retain(|track| !track.key.starts_with("camera."));
         }
         match args.projection {
             None => {}
@@ -221,7 +226,8 @@ impl Job {
             return Err(Usage("--layers is for the realtime march; choose --quality high".to_owned()).into());
         }
         let forced = args::forced(&args.force)?;
-        Ok(Self { preset, quality, format, output, goal, forced, pictures: pictures(args)? })
+        let pictures = pictures(args, preset.animation.speed)?;
+        Ok(Self { preset, quality, format, output, goal, forced, pictures })
     }
 }
 
@@ -237,7 +243,7 @@ fn format_of(path: &Path) -> Result<Format> {
 }
 
 /// The files to write, with their times; those of a sequence that exist are left out.
-fn pictures(args: &RenderArgs) -> Result<Vec<(PathBuf, f64)>> {
+fn pictures(args: &RenderArgs, speed: f64) -> Result<Vec<(PathBuf, f64)>> {
     let pattern = FramePattern::parse(&args.output)?;
     let pictures = match (&args.frames, pattern.is_sequence()) {
         (None, false) => vec![(args.output.clone(), args.time)],
@@ -250,7 +256,9 @@ fn pictures(args: &RenderArgs) -> Result<Vec<(PathBuf, f64)>> {
                 return Err(Usage(format!("--fps {} must be above 0", args.fps)).into());
             }
             let frames = parse_frame_range(range).with_context(|| format!("--frames {range:?} cannot be used"))?;
-            let all = frames.into_iter().map(|frame| (pattern.path_of(frame), args.time + f64::from(frame) / args.fps));
+            let all = frames
+                .into_iter()
+                .map(|frame| (pattern.path_of(frame), args.time + speed * f64::from(frame) / args.fps));
             all.filter(|(path, _)| args.overwrite || !is_there(path)).collect()
         }
     };
@@ -316,7 +324,8 @@ fn write_picture(
     tell: &dyn Fn(f32),
 ) -> Result<()> {
     let Job { preset, quality, output, .. } = job;
-    let frame = Frame { scene: &preset.scene, quality, size: args.size, time_secs, output: *output };
+    let scene = preset.at(time_secs);
+    let frame = Frame { scene: &scene, quality, size: args.size, time_secs, output: *output };
     let about = About { preset, quality, time_secs };
     let failed = || format!("{} could not be rendered", path.display());
     let not_finished = || Interrupted(format!("{} is not finished and was not written", path.display())).into();

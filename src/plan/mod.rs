@@ -128,10 +128,10 @@ impl FramePlan {
         let sky = lights::sky(frame, ground.is_some(), march, &lighting, &mut why);
         let display = &scene.display;
         let graded = why.needed_if(
-            display.contrast != 1.0 || display.saturation != 1.0,
+            (display.contrast != 1.0 || display.saturation != 1.0) && display.tone_map != ToneMap::FalseColour,
             Effect::Grading,
             format!("contrast is {}, saturation {}", display.contrast, display.saturation),
-            "contrast and saturation are 1",
+            "contrast and saturation are 1, or false colours are shown",
         );
         Self {
             key: lighting.key,

@@ -10,6 +10,7 @@ mod clearance;
 mod context;
 mod interactive;
 mod layers;
+pub mod meter;
 mod output;
 pub mod pass;
 mod passes;
@@ -41,6 +42,7 @@ use voxels::Voxels;
 use weather::WeatherMap;
 
 pub use layers::Layers;
+pub use meter::LightHistogram;
 pub use output::{Counts, LinearImage};
 pub use still::Still;
 

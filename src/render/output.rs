@@ -72,16 +72,18 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Gpu`] if the device fails.
     pub fn clouds(&self) -> Result<Vec<[f32; 4]>, RenderError> {
-        let Some(targets) = &self.targets else {
-            return Ok(Vec::new());
-        };
-        let temporal = targets.history.as_ref().zip(self.history.as_ref());
-        let marched = targets.marched.as_ref().map(|marched| &marched.light);
-        let target = temporal.map(|(sides, history)| &sides[history.side]).or(marched);
-        match target {
+        match self.last_cloud() {
             Some(cloud) => Ok(readback::rgba(&self.gpu, cloud)?),
             None => Ok(Vec::new()),
         }
+    }
+
+    /// Light and transmittance of the clouds of the last finished frame.
+    pub(super) fn last_cloud(&self) -> Option<&Texture> {
+        let targets = self.targets.as_ref()?;
+        let temporal = targets.history.as_ref().zip(self.history.as_ref());
+        let marched = targets.marched.as_ref().map(|marched| &marched.light);
+        temporal.map(|(sides, history)| &sides[history.side]).or(marched)
     }
 
     /// Renders the frame with a shader that counts, which costs time and must not be timed.

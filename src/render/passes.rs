@@ -114,7 +114,7 @@ fn background_key(plan: &FramePlan, is_open: bool) -> ProgramKey {
     ProgramKey::plain("pass/background.wgsl").with_flags(on.into_iter().filter_map(|(flag, on)| on.then_some(flag)))
 }
 
-fn composed_flags(plan: &FramePlan) -> impl Iterator<Item = &'static str> {
+pub(super) fn composed_flags(plan: &FramePlan) -> impl Iterator<Item = &'static str> {
     [("CLOUDS", plan.has_clouds()), ("SHAFTS", plan.sunshafts.is_some())]
         .into_iter()
         .filter_map(|(flag, on)| on.then_some(flag))
@@ -133,6 +133,7 @@ fn tonemap_key(plan: &FramePlan) -> ProgramKey {
         ToneMap::Agx => 0,
         ToneMap::Neutral => 1,
         ToneMap::Linear => 2,
+        ToneMap::FalseColour => 3,
     };
     ProgramKey::plain("pass/tonemap.wgsl")
         .with_flags(composed_flags(plan))

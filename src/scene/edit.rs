@@ -278,6 +278,16 @@ pub struct Entry {
     pub value: String,
 }
 
+/// What is allowed for a file.
+const FILE: &str = "a file name";
+
+impl Entry {
+    /// Whether the parameter names a file.
+    pub fn is_file(&self) -> bool {
+        self.allowed == FILE
+    }
+}
+
 /// All parameters of `root` in order, list items included.
 pub fn keys<P: Params + Clone>(root: &P) -> Vec<Entry> {
     let mut keys = Keys { prefix: String::new(), entries: Vec::new() };
@@ -341,7 +351,7 @@ impl Visitor for Keys {
     }
 
     fn file(&mut self, info: &Info<FileName>, value: &mut FileName) {
-        self.push(info, "a file name".to_owned(), [info.default.0.clone(), value.0.clone()]);
+        self.push(info, FILE.to_owned(), [info.default.0.clone(), value.0.clone()]);
     }
 
     fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {

@@ -4,6 +4,7 @@
 //! blows from, azimuths run clockwise from north. Angles are degrees here, where people see them, and radians from
 //! [`crate::render::uniforms`] on.
 
+mod animation;
 pub mod bounds;
 pub mod builtin;
 pub mod clip;
@@ -23,10 +24,11 @@ pub mod reference_docs;
 mod sun_position;
 mod weather;
 
+pub use animation::{Animation, DURATION_RANGE_SECS, Ease, Keyframe, SPEED_RANGE, Track};
 pub use frame::{Frame, Output};
 pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
 pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};
-pub use place::{Camera, Display, Domain, DomainKind, FieldOfViewAxis, Ground, Projection, ToneMap};
+pub use place::{Camera, Display, Domain, DomainKind, FALSE_COLOURS, FieldOfViewAxis, Ground, Projection, ToneMap};
 pub use preset::{PRESET_VERSION, Preset, PresetError, quality_from_ron, quality_to_ron};
 pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
 pub use sun_position::{CITIES, Moment};

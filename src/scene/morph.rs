@@ -116,7 +116,7 @@ impl Towards {
 
 /// A share of the way between two values of a parameter.
 #[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
-fn between(info: &Info<f32>, (from, to): (f32, f32), share: f32) -> f32 {
+pub(super) fn between(info: &Info<f32>, (from, to): (f32, f32), share: f32) -> f32 {
     if share >= 1.0 || from == to {
         return to;
     }

@@ -173,8 +173,26 @@ choices! {
         Neutral ("Khronos Neutral"),
         /// No curve; what is too bright clips.
         Linear ("Linear"),
+        /// Stops above and below middle grey as colours, to judge exposure by: grey is grey, red is about to clip.
+        FalseColour ("False colour"),
     }
 }
+
+/// The bands of [`ToneMap::FalseColour`]: stops relative to middle grey where each ends, and its colour as displayed. The same
+/// table is in `common/tonemap.wgsl`.
+pub const FALSE_COLOURS: [(f32, [u8; 3]); 11] = [
+    (-6.0, [38, 10, 64]),
+    (-4.0, [40, 50, 160]),
+    (-2.0, [30, 120, 200]),
+    (-1.0, [30, 150, 150]),
+    (-0.5, [40, 140, 70]),
+    (0.5, [128, 128, 128]),
+    (1.0, [120, 190, 80]),
+    (2.0, [220, 220, 70]),
+    (3.0, [240, 160, 50]),
+    (4.5, [220, 60, 40]),
+    (f32::INFINITY, [255, 255, 255]),
+];
 
 params! {
     /// How light becomes the picture on the screen. Never part of an EXR.

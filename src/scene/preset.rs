@@ -15,10 +15,11 @@ use serde::{Deserialize, de::DeserializeOwned};
 
 use self::check::{Finding, What};
 use self::locate::{Kind, Node};
+pub(super) use self::write::quoted;
 use super::bounds::Fault;
 use super::nearest::did_you_mean;
 use super::param::{Choice, Params};
-use super::{Quality, QualityLevel, Scene};
+use super::{Animation, Quality, QualityLevel, Scene};
 
 /// The version that this program writes. Older ones are read too.
 pub const PRESET_VERSION: u32 = 2;
@@ -37,8 +38,10 @@ pub struct Preset {
     pub tags: Vec<String>,
     /// The quality level that suits the sky, if its author says.
     pub quality: Option<QualityLevel>,
-    /// The sky.
+    /// The sky; what has keys as it is at the time that was played last, and at time 0 in a file.
     pub scene: Scene,
+    /// What changes with time.
+    pub animation: Animation,
 }
 
 impl Default for Preset {
@@ -50,6 +53,7 @@ impl Default for Preset {
             tags: Vec::new(),
             quality: None,
             scene: Scene::default(),
+            animation: Animation::default(),
         }
     }
 }
@@ -144,7 +148,7 @@ impl Preset {
         let source = Source { text, file };
         let mut tree = source.parse()?;
         let version = source.version(&tree)?;
-        source.check_header(&tree, &["version", "name", "description", "tags", "quality", "scene"])?;
+        source.check_header(&tree, &["version", "name", "description", "tags", "quality", "scene", "animation"])?;
         source.check_texts(&tree)?;
         source.check_level(&tree)?;
         if let Some(scene) = field_mut(&mut tree, "scene") {
@@ -158,23 +162,54 @@ impl Preset {
             let scene = tree.field("scene").map_or(&tree, |field| &field.value);
             return Err(PresetError::Rule { place: source.place(scene.nearest(key).span.start), message });
         }
+        if let Some((track, message)) = preset.animation.fault(&preset.scene) {
+            let animation = tree.field("animation").map_or(&tree, |field| &field.value);
+            let tracks = animation.field("tracks").map(|field| &field.value.kind);
+            let node = match (tracks, track) {
+                (Some(Kind::List(tracks)), Some(index)) => tracks.get(index),
+                _ => None,
+            };
+            return Err(PresetError::Rule { place: source.place(node.unwrap_or(animation).span.start), message });
+        }
+        preset.play(0.0);
         Ok(preset)
+    }
+
+    /// Gives everything that has keys its value at that time.
+    pub fn play(&mut self, time_secs: f64) {
+        self.animation.play(&mut self.scene, time_secs);
+    }
+
+    /// The sky at a time.
+    pub fn at(&self, time_secs: f64) -> Scene {
+        let mut scene = self.scene.clone();
+        self.animation.play(&mut scene, time_secs);
+        scene
+    }
+
+    /// The preset as a file holds it: at time 0.
+    pub fn at_rest(&self) -> Self {
+        Self { scene: self.at(0.0), ..self.clone() }
     }
 
     /// The preset as RON, in the current version; [`Self::from_ron`] gives the same preset back.
     pub fn to_ron(&self) -> String {
-        let mut text = format!("(\n    version: {PRESET_VERSION},\n    name: {},\n", write::quoted(&self.name));
+        let mut text = format!("(\n    version: {PRESET_VERSION},\n    name: {},\n", quoted(&self.name));
         if !self.description.is_empty() {
-            text.push_str(&format!("    description: {},\n", write::quoted(&self.description)));
+            text.push_str(&format!("    description: {},\n", quoted(&self.description)));
         }
         if !self.tags.is_empty() {
-            let tags: Vec<String> = self.tags.iter().map(|tag| write::quoted(tag)).collect();
+            let tags: Vec<String> = self.tags.iter().map(|tag| quoted(tag)).collect();
             text.push_str(&format!("    tags: [{}],\n", tags.join(", ")));
         }
         if let Some(level) = self.quality {
             text.push_str(&format!("    quality: {},\n", level.name()));
         }
-        push_group(&mut text, "scene", &write::fields(&mut self.scene.clone(), 2));
+        push_group(&mut text, "scene", &write::fields(&mut self.at(0.0), 2));
+        let animation = self.animation.to_ron(2);
+        if !animation.is_empty() {
+            push_group(&mut text, "animation", &animation);
+        }
         text.push_str(")\n");
         text
     }

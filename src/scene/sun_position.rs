@@ -105,6 +105,12 @@ impl Sun {
         Some(high.min(24.0 * 60.0) / 60.0)
     }
 
+    /// The hours of dawn and dusk on the sun's day at its place; `None` where it does not rise through twilight and sink again.
+    pub fn daylight(&self) -> Option<[f32; 2]> {
+        let hours = [self.hour_of(Moment::MorningTwilight)?, self.hour_of(Moment::EveningTwilight)?];
+        (hours[0] < hours[1]).then_some(hours)
+    }
+
     /// Puts day and hour to those of a clock, in seconds since the beginning of 1970 (universal time).
     #[allow(
         clippy::cast_possible_truncation,

@@ -56,6 +56,7 @@ files! {
     "pass/march.wgsl",
     "pass/march_clear.wgsl",
     "pass/march_state.wgsl",
+    "pass/meter.wgsl",
     "pass/path_state.wgsl",
     "pass/path_trace.wgsl",
     "pass/shafts_blur.wgsl",

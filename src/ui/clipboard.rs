@@ -13,6 +13,7 @@ enum Wish {
     Nothing,
     Copy(String),
     PasteCopied(String),
+    SetKey(String),
 }
 
 fn wish_id() -> Id {
@@ -28,13 +29,18 @@ pub(super) fn note_pointed(ui: &Ui, key: &str) {
     ui.data_mut(|data| data.insert_temp(pointed_id(), key.to_owned()));
 }
 
+/// Whether a key names a parameter of the sky, rather than a section or a setting of quality.
+fn can_move(key: &str, scene: &Scene) -> bool {
+    crate::scene::edit::keys(scene).iter().any(|entry| entry.key == key && !entry.is_file())
+}
+
 /// Whether Backspace was pressed and nobody is typing.
 pub(super) fn is_reset_pressed(ui: &Ui) -> bool {
     !ui.ctx().egui_wants_keyboard_input() && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Backspace))
 }
 
-/// The menu on the name of a parameter or section.
-pub(super) fn menu(name: &Response, key: &str, title: &str, modified: bool, reset: &mut bool) {
+/// The menu on the name of a parameter or section; only a parameter of the sky can have keys.
+pub(super) fn menu(name: &Response, key: &str, title: &str, (modified, can_move): (bool, bool), reset: &mut bool) {
     name.context_menu(|ui| {
         ui.set_min_width(150.0);
         let wish = |ui: &Ui, wish: Wish| ui.data_mut(|data| data.insert_temp(wish_id(), wish));
@@ -48,6 +54,10 @@ pub(super) fn menu(name: &Response, key: &str, title: &str, modified: bool, rese
         }
         if ui.add_enabled(modified, egui::Button::new(format!("Reset {title}"))).clicked() {
             *reset = true;
+            ui.close();
+        }
+        if can_move && ui.add(egui::Button::new("Set a key here").shortcut_text("K")).clicked() {
+            wish(ui, Wish::SetKey(key.to_owned()));
             ui.close();
         }
     });
@@ -79,6 +89,7 @@ pub(super) fn take(
         Wish::PasteCopied(key) => {
             actions.push(Action::Ask(Request::Paste { key: Some(key.clone()), text: copied.clone() }));
         }
+        Wish::SetKey(key) => actions.push(Action::SetKey(key.clone())),
         Wish::Nothing => {}
     }
     if ui.ctx().egui_wants_keyboard_input() || is_asking {
@@ -91,6 +102,11 @@ pub(super) fn take(
         });
         (input.events.contains(&Event::Copy), pasted)
     });
+    if let Some(key) = pointed.as_ref().filter(|key| can_move(key, scene))
+        && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::K))
+    {
+        actions.push(Action::SetKey(key.clone()));
+    }
     match &pointed {
         Some(key) if is_copied => copy(copied, key),
         None if is_copied => actions.push(Action::Ask(Request::CopyPicture)),

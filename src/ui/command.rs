@@ -31,6 +31,10 @@ pub enum Command {
     History,
     /// Points of the picture in numbers, on or off.
     Inspect,
+    /// Light of the picture on or off.
+    Histogram,
+    /// Stops as colours on or off.
+    FalseColour,
     /// Keep the sky and its picture.
     Snapshot,
     /// Random changes on or off.
@@ -51,6 +55,8 @@ pub enum Command {
     PlayPause,
     /// Time back to 0.
     ResetTime,
+    /// Keys on or off.
+    Timeline,
     /// Camera back to the preset's.
     ResetCamera,
     /// Half a stop brighter.
@@ -84,19 +90,21 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 35] = [
+const TABLE: [(Command, Modifiers, Key, &str); 38] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
     (Command::SaveAs, CTRL_SHIFT, Key::S, "Save as…"),
     (Command::Save, Modifiers::COMMAND, Key::S, "Save"),
     (Command::Screenshot, Modifiers::NONE, Key::F12, "Screenshot"),
+    (Command::FalseColour, CTRL_SHIFT, Key::E, "False colour"),
     (Command::Export, Modifiers::COMMAND, Key::E, "Export still…"),
     (Command::Quit, Modifiers::COMMAND, Key::Q, "Quit"),
     (Command::Redo, CTRL_SHIFT, Key::Z, "Redo"),
     (Command::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
     (Command::History, Modifiers::NONE, Key::F8, "History"),
     (Command::Inspect, Modifiers::NONE, Key::I, "Inspect points"),
+    (Command::Histogram, Modifiers::NONE, Key::H, "Histogram and exposure"),
     (Command::Snapshot, Modifiers::NONE, Key::F7, "Take a snapshot"),
     (Command::Vary, Modifiers::COMMAND, Key::R, "Vary the sky"),
     (Command::CopySky, CTRL_SHIFT, Key::C, "Copy the sky as text"),
@@ -107,6 +115,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 35] = [
     (Command::ViewForth, Modifiers::ALT, Key::ArrowRight, "Camera forth"),
     (Command::PlayPause, Modifiers::NONE, Key::Space, "Play or pause"),
     (Command::ResetTime, CTRL_SHIFT, Key::Home, "Time back to 0"),
+    (Command::Timeline, Modifiers::COMMAND, Key::T, "Timeline"),
     (Command::ResetCamera, Modifiers::NONE, Key::Home, "Camera back to the preset’s"),
     (Command::Brighter, Modifiers::NONE, Key::OpenBracket, "Half a stop brighter"),
     (Command::Darker, Modifiers::NONE, Key::CloseBracket, "Half a stop darker"),
@@ -124,7 +133,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 35] = [
 ];
 
 /// What mice and held keys do, for the sheet.
-pub(super) const GESTURES: [(&str, &str); 15] = [
+pub(super) const GESTURES: [(&str, &str); 16] = [
     ("Right mouse held", "Look around"),
     ("… with W A S D", "Fly forwards, left, back, right"),
     ("… with Q E", "Fly down, up"),
@@ -139,6 +148,7 @@ pub(super) const GESTURES: [(&str, &str); 15] = [
     ("Ctrl+C, Ctrl+V on a name", "Copy, paste a parameter or a section"),
     ("… elsewhere", "Copy the picture, paste a sky"),
     ("Backspace on a name", "Reset a parameter"),
+    ("K on a name", "Set a key at this time"),
     ("Ctrl and + − 0", "Size of the panels"),
 ];
 
@@ -203,6 +213,9 @@ impl Command {
             Self::Darker => actions.push(Action::ChangeExposure(0.5)),
             Self::Presets => state.show_presets = Some(!state.presets_visible(ui.ctx().content_rect().width())),
             Self::Panel => state.show_panel = !state.show_panel,
+            Self::Histogram => state.histogram.is_open = !state.histogram.is_open,
+            Self::FalseColour => actions.push(super::histogram::toggled(document)),
+            Self::Timeline => state.timeline.is_open = !state.timeline.is_open,
             Self::Overlay => state.show_overlay = !state.show_overlay,
             Self::Lab => state.lab.is_open = !state.lab.is_open,
             Self::Refine => state.truth.refines = !state.truth.refines,
@@ -257,6 +270,8 @@ impl Command {
             Self::Compare => state.truth.compares(),
             Self::Keep => state.truth.is_kept,
             Self::History => state.show_history,
+            Self::Timeline => state.timeline.is_open,
+            Self::Histogram => state.histogram.is_open,
             Self::Vary => state.vary.is_open,
             Self::Inspect => state.inspector.is_on,
             _ => false,
@@ -268,6 +283,7 @@ impl Command {
         matches!(
             self,
             Self::Inspect
+                | Self::Histogram
                 | Self::PlayPause
                 | Self::ResetCamera
                 | Self::ResetTime

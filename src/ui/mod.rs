@@ -3,6 +3,7 @@
 mod clipboard;
 mod command;
 mod dialogs;
+mod histogram;
 mod history;
 mod inspector;
 mod lab;
@@ -14,6 +15,7 @@ mod probe;
 mod row;
 mod snapshots;
 mod sundial;
+mod timeline;
 mod toasts;
 mod top_bar;
 mod truth;
@@ -22,6 +24,7 @@ mod viewport;
 
 pub use command::Command;
 pub use dialogs::{Dialog, ExportForm};
+pub use histogram::HistogramState;
 pub use inspector::{InspectorState, Picked};
 pub use lab::{LabState, LabView, Measured, Phase};
 pub use overlay::{PassLine, Readout};
@@ -30,6 +33,7 @@ pub use panel::PanelState;
 pub use presets::{Entry, Library, Morph, Thumbnail};
 pub use probe::set_file_in;
 pub use snapshots::{Beside, Snapshot, SnapshotState};
+pub use timeline::TimelineState;
 pub use toasts::{Level, Toasts};
 pub use truth::{Comparison, Figures, Refined, Refinement, TruthState, TruthView};
 pub use vary::VaryState;
@@ -64,6 +68,10 @@ pub struct State {
     pub palette: PaletteState,
     /// Random changes.
     pub vary: VaryState,
+    /// Light of the picture.
+    pub histogram: HistogramState,
+    /// Keys.
+    pub timeline: TimelineState,
     /// Whether the list of steps is there.
     pub show_history: bool,
     /// Whether everything but the picture is hidden.
@@ -108,6 +116,8 @@ impl Default for State {
             inspector: InspectorState::default(),
             palette: PaletteState::default(),
             vary: VaryState::default(),
+            histogram: HistogramState::default(),
+            timeline: TimelineState::default(),
             show_history: false,
             hide_all: false,
             dialog: None,
@@ -173,6 +183,7 @@ pub fn show(
         let most = (width * 0.55).max(260.0);
         if state.show_panel {
             let size = if width < 900.0 { 300.0 } else { 350.0 };
+            timeline::note_keyed(ui, document.animation());
             egui::Panel::right("parameters").default_size(size).size_range(260.0..=most).show(ui, |ui| {
                 ui.add_space(4.0);
                 actions.extend(panel::show(ui, &mut state.panel, &document.preset().scene, document.quality()));
@@ -191,6 +202,12 @@ pub fn show(
             snapshots::show(ui, &mut state.snapshots, document, &mut actions);
         });
     }
+    if !state.hide_all && state.timeline.is_open {
+        egui::Panel::bottom("timeline").default_size(130.0).size_range(84.0..=400.0).resizable(true).show(ui, |ui| {
+            ui.add_space(3.0);
+            timeline::show(ui, &mut state.timeline, document, &mut actions);
+        });
+    }
     let central = egui::CentralPanel::no_frame().show(ui, |ui| {
         let beside = (&mut state.truth, &mut state.snapshots, &mut state.inspector);
         viewport::show(ui, &mut state.viewport, beside, document);
@@ -205,6 +222,9 @@ pub fn show(
     if state.lab.is_open && !state.hide_all {
         lab::show(ui.ctx(), area, (&mut state.lab, document), &mut actions);
     }
+    if state.histogram.is_open && !state.hide_all {
+        histogram::show(ui.ctx(), (area, state.truth.height), &mut state.histogram, document, &mut actions);
+    }
     inspector::show(ui.ctx(), area, &state.inspector);
     if state.vary.is_open && !state.hide_all {
         vary::show(ui.ctx(), area, (&mut state.vary, document), &mut actions);
@@ -216,6 +236,8 @@ pub fn show(
     let held = (&document.preset().scene, document.quality());
     let is_asking = state.dialog.is_some() || state.palette.is_open;
     clipboard::take(ui, (&mut state.panel.copied, is_asking), held, &mut actions);
+    // Who sets a key wants to see it.
+    state.timeline.is_open |= actions.iter().any(|action| matches!(action, Action::SetKey(_)));
     dialogs::show(ui.ctx(), state, document, &mut actions);
     state.toasts.show(ui.ctx(), area);
     actions

@@ -212,7 +212,7 @@ impl<'u> Rows<'u> {
             // The sundial is no section of parameters.
             if key != SUNDIAL {
                 let modified = buttons.is_some_and(|(_, modified)| modified);
-                clipboard::menu(&response, key, heading.title, modified, &mut reset);
+                clipboard::menu(&response, key, heading.title, (modified, false), &mut reset);
                 if response.contains_pointer() {
                     clipboard::note_pointed(ui, key);
                 }

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use egui::{Align, DragValue, Layout, Response, Slider, Ui, UiBuilder, Vec2};
 
-use super::clipboard;
+use super::{clipboard, timeline};
 use crate::scene::expression::evaluate;
 use crate::scene::param::{ChoiceInfo, Colour, FileName, Info, Unit, label};
 
@@ -29,13 +29,15 @@ struct Help<'i> {
     doc: &'i str,
     range: Option<String>,
     default: String,
+    /// Whether it can have keys, if it is of the sky.
+    can_move: bool,
 }
 
 impl Help<'_> {
     fn text(&self) -> String {
         let range = self.range.as_ref().map(|range| format!("Range {range} · ")).unwrap_or_default();
         format!(
-            "{}\n\n{range}Default {}\nKey {}\n\nBackspace resets, Ctrl+C and Ctrl+V copy and paste what the pointer is on",
+            "{}\n\n{range}Default {}\nKey {}\n\nBackspace resets, Ctrl+C and Ctrl+V copy and paste what the pointer is on, K sets a key",
             self.doc.trim(),
             self.default,
             self.key
@@ -66,14 +68,19 @@ fn frame(
 
     let mut label_ui = ui.new_child(UiBuilder::new().max_rect(label_rect).layout(Layout::left_to_right(Align::Center)));
     let text = egui::RichText::new(title);
-    let text = if modified { text.color(ui.visuals().strong_text_color()) } else { text };
+    let text = match (timeline::is_keyed(ui, help.key), modified) {
+        (true, _) => text.color(timeline::colour(ui)),
+        (false, true) => text.color(ui.visuals().strong_text_color()),
+        (false, false) => text,
+    };
     let heading = label_ui.add(egui::Label::new(text).truncate().selectable(false).sense(egui::Sense::click()));
     let heading = heading.on_hover_ui(|ui| {
         ui.set_max_width(340.0);
         ui.label(help.text());
     });
     result.reset |= heading.double_clicked();
-    clipboard::menu(&heading, help.key, title, modified, &mut result.reset);
+    let can_move = help.can_move && !help.key.starts_with("quality.");
+    clipboard::menu(&heading, help.key, title, (modified, can_move), &mut result.reset);
     if whole.contains_pointer() {
         clipboard::note_pointed(ui, help.key);
         result.reset |= modified && clipboard::is_reset_pressed(ui);
@@ -195,7 +202,7 @@ pub(super) fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -
     let (low, high) = (f64::from(*range.start()), f64::from(*range.end()));
     let show = |value: f32| format!("{}{suffix}", number(f64::from(value)));
     let shown_range = info.range.as_ref().map(|range| format!("{} to {}", show(*range.start()), show(*range.end())));
-    let help = Help { key, doc: info.doc, range: shown_range, default: show(info.default) };
+    let help = Help { key, doc: info.doc, range: shown_range, default: show(info.default), can_move: true };
     let scale =
         Scale { title: &title, key, unit: info.unit, range: low..=high, logarithmic: info.logarithmic, whole: false };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
@@ -216,7 +223,8 @@ pub(super) fn count(ui: &mut Ui, key: &str, info: &Info<u32>, value: &mut u32) -
     let suffix = info.unit.suffix();
     let range = info.range.clone().unwrap_or(0..=u32::MAX);
     let shown_range = info.range.as_ref().map(|range| format!("{} to {}{suffix}", range.start(), range.end()));
-    let help = Help { key, doc: info.doc, range: shown_range, default: format!("{}{suffix}", info.default) };
+    let help =
+        Help { key, doc: info.doc, range: shown_range, default: format!("{}{suffix}", info.default), can_move: true };
     let wide = f64::from(*range.start())..=f64::from(*range.end());
     let scale = Scale { title: &title, key, unit: info.unit, range: wide, logarithmic: info.logarithmic, whole: true };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
@@ -234,7 +242,7 @@ pub(super) fn count(ui: &mut Ui, key: &str, info: &Info<u32>, value: &mut u32) -
 pub(super) fn switch(ui: &mut Ui, key: &str, info: &Info<bool>, value: &mut bool) -> bool {
     let title = info.label();
     let word = |on| if on { "on" } else { "off" };
-    let help = Help { key, doc: info.doc, range: None, default: word(info.default).to_owned() };
+    let help = Help { key, doc: info.doc, range: None, default: word(info.default).to_owned(), can_move: true };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
         let response = ui.checkbox(value, "");
         name(ui, &response, &title, key);
@@ -247,7 +255,7 @@ pub(super) fn switch(ui: &mut Ui, key: &str, info: &Info<bool>, value: &mut bool
 pub(super) fn choice(ui: &mut Ui, key: &str, info: &ChoiceInfo, index: &mut usize) -> bool {
     let title = label(info.name);
     let option = |index: usize| info.options.get(index).copied().unwrap_or(["", "?", ""]);
-    let help = Help { key, doc: info.doc, range: None, default: option(info.default)[1].to_owned() };
+    let help = Help { key, doc: info.doc, range: None, default: option(info.default)[1].to_owned(), can_move: true };
     let result = frame(ui, &title, &help, *index != info.default, |ui| {
         let before = *index;
         let width = ui.available_width();
@@ -268,8 +276,13 @@ pub(super) fn choice(ui: &mut Ui, key: &str, info: &ChoiceInfo, index: &mut usiz
 pub(super) fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Colour) -> bool {
     let title = info.label();
     let words = |colour: Colour| format!("{}, {}, {}", colour.0, colour.1, colour.2);
-    let help =
-        Help { key, doc: info.doc, range: Some("linear Rec.709, 0 to 100".to_owned()), default: words(info.default) };
+    let help = Help {
+        key,
+        doc: info.doc,
+        range: Some("linear Rec.709, 0 to 100".to_owned()),
+        default: words(info.default),
+        can_move: true,
+    };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
         ui.spacing_mut().item_spacing.x = 3.0;
         ui.spacing_mut().interact_size.x = 24.0;
@@ -303,7 +316,7 @@ pub(super) fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Co
 /// A row for a file: its path, taken over with Enter or on leaving the field, and a button for the file dialog.
 pub(super) fn file(ui: &mut Ui, key: &str, (info, value): (&Info<FileName>, &mut FileName), browse: &mut bool) -> bool {
     let title = info.label();
-    let help = Help { key, doc: info.doc, range: None, default: "none".to_owned() };
+    let help = Help { key, doc: info.doc, range: None, default: "none".to_owned(), can_move: false };
     let result = frame(ui, &title, &help, *value != info.default, |ui| {
         let id = ui.make_persistent_id(("path", key));
         let kept: Option<String> = ui.data(|data| data.get_temp(id));

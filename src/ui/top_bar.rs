@@ -4,8 +4,9 @@ use egui::{Align, Layout, Theme, Ui};
 
 use super::{Busy, Command, State, row};
 use crate::app::action::{Action, Request};
-use crate::app::document::{Document, TIME_FACTOR_RANGE};
+use crate::app::document::Document;
 use crate::app::preferences::Preferences;
+use crate::scene::SPEED_RANGE;
 use crate::scene::expression::evaluate;
 use crate::scene::param::Unit;
 
@@ -61,9 +62,17 @@ fn menus(
     });
     ui.menu_button("View", |ui| {
         let groups = [
-            &[Command::Presets, Command::Panel, Command::Overlay, Command::Lab, Command::Inspect][..],
+            &[
+                Command::Presets,
+                Command::Panel,
+                Command::Timeline,
+                Command::Overlay,
+                Command::Lab,
+                Command::Inspect,
+                Command::Histogram,
+            ][..],
             &[Command::HideAll, Command::FullScreen],
-            &[Command::ResetCamera, Command::Brighter, Command::Darker],
+            &[Command::ResetCamera, Command::Brighter, Command::Darker, Command::FalseColour],
             &[Command::Refine, Command::Keep, Command::Compare],
         ];
         entries(ui, (state, document), &groups, &mut chosen);
@@ -166,10 +175,10 @@ fn time(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
     }
     ui.add(egui::Label::new(egui::RichText::new(clock(document.time_secs())).monospace()).selectable(false))
         .on_hover_text("Time since the scene began");
-    let mut factor = document.time_factor();
+    let mut factor = document.animation().speed;
     let speed = factor.max(0.1) * 0.01;
     let field = egui::DragValue::new(&mut factor)
-        .range(TIME_FACTOR_RANGE)
+        .range(SPEED_RANGE)
         .speed(speed)
         .prefix("×")
         .update_while_editing(false)
@@ -178,7 +187,7 @@ fn time(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) {
     let field = ui.add(field).on_hover_text("Speed of time: seconds of the scene per second of the clock");
     row::name(ui, &field, "Speed of time", "time.factor");
     if field.changed() {
-        actions.push(Action::SetTimeFactor(factor));
+        actions.push(Action::SetSpeed(factor));
     }
 }
 

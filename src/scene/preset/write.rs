@@ -10,7 +10,7 @@ pub(super) fn fields(root: &mut impl Params, depth: usize) -> String {
 }
 
 /// A string in quotes, with escapes.
-pub(super) fn quoted(text: &str) -> String {
+pub(in crate::scene) fn quoted(text: &str) -> String {
     let mut quoted = String::from("\"");
     for letter in text.chars() {
         match letter {
