@@ -16,6 +16,7 @@ use nephoscope::ui::{Comparison, Dialog, LabView, Measured, Phase, Picture, Read
 mod ui {
     mod studio;
     mod time;
+    mod view;
 }
 
 /// The panels with a session, and what was left for the window to do.
@@ -72,6 +73,12 @@ impl Editor {
 
     fn click_label(&mut self, label: &str) {
         self.harness.get_by_label(label).click();
+        self.harness.run();
+    }
+
+    fn click_label_contains(&mut self, label: &str) {
+        let found = self.harness.query_all_by_label_contains(label).next();
+        found.unwrap_or_else(|| panic!("nothing says {label}")).click();
         self.harness.run();
     }
 
@@ -350,7 +357,7 @@ fn the_theme_and_the_panels_toggle() {
     assert!(editor.has_label("n/a"), "what was not measured is no number");
     editor.harness.key_press(egui::Key::F1);
     editor.harness.run();
-    assert!(editor.has_label("Orbit the point ahead"), "the sheet");
+    assert!(editor.has_label("Go to a kept camera"), "the sheet");
     editor.harness.key_press(egui::Key::F1);
     editor.harness.run();
     editor.harness.key_press(egui::Key::Tab);

@@ -7,7 +7,7 @@ use crate::lab::accuracy::Setting;
 use crate::lab::bench::Rounds;
 use crate::lab::suite::SuiteKind;
 use crate::render::truth::Goal;
-use crate::scene::{Animation, Camera, Preset, Quality, QualityLevel, Scene};
+use crate::scene::{Animation, Bookmark, Camera, Preset, Quality, QualityLevel, Scene};
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +32,15 @@ pub enum Action {
     MoveCamera(Camera),
     /// The camera returns to where the preset put it.
     ResetCamera,
+    /// The camera goes to one that was kept, by its number from 0.
+    GoToCamera(usize),
+    /// The list of kept cameras was edited.
+    EditCameras {
+        /// What was done to it.
+        step: &'static str,
+        /// All of them.
+        cameras: Vec<Bookmark>,
+    },
     /// The sun was dragged by so many degrees of elevation and azimuth.
     TurnSun {
         /// Upwards, in degrees.
@@ -278,6 +287,7 @@ impl Action {
             Self::EditScene { .. }
                 | Self::MoveCamera(_)
                 | Self::ResetCamera
+                | Self::GoToCamera(_)
                 | Self::TurnSun { .. }
                 | Self::ChangeExposure(_)
         )
@@ -292,6 +302,8 @@ impl Action {
             Self::SetQualityLevel(_) => "set the quality level".to_owned(),
             Self::MoveCamera(_) => "move the camera".to_owned(),
             Self::ResetCamera => "reset the camera".to_owned(),
+            Self::GoToCamera(_) => "go to a camera".to_owned(),
+            Self::EditCameras { step, .. } => (*step).to_owned(),
             Self::TurnSun { .. } => "move the sun".to_owned(),
             Self::ChangeExposure(_) => "change the exposure".to_owned(),
             Self::Rename(_) => "rename".to_owned(),

@@ -19,8 +19,12 @@ pub struct Push {
 const SPEED_RANGE_MPS: std::ops::RangeInclusive<f64> = 1.0..=20_000.0;
 /// Turn per pixel of mouse movement, at any frame rate and window size.
 const DEGREES_PER_PIXEL: f32 = 0.12;
-/// Distance of the point that the camera orbits, when nothing says otherwise.
-const ORBIT_DISTANCE_M: f64 = 4000.0;
+/// Distance of the point that the camera orbits, until it is moved towards it or away.
+const PIVOT_M: f64 = 4000.0;
+/// How near and how far that point may be.
+const PIVOT_RANGE_M: std::ops::RangeInclusive<f64> = 50.0..=100_000.0;
+/// Share of the way to that point that a pixel of movement goes.
+const DOLLY_PER_PIXEL: f64 = 0.004;
 /// One notch of the wheel changes the speed by this factor; four make an octave.
 const SPEED_STEP: f64 = 1.189_207_115;
 
@@ -28,11 +32,13 @@ const SPEED_STEP: f64 = 1.189_207_115;
 #[derive(Clone, Debug)]
 pub struct CameraControl {
     speed_mps: f64,
+    /// Distance of the point that the camera orbits.
+    pivot_m: f64,
 }
 
 impl Default for CameraControl {
     fn default() -> Self {
-        Self { speed_mps: 120.0 }
+        Self { speed_mps: 120.0, pivot_m: PIVOT_M }
     }
 }
 
@@ -66,17 +72,40 @@ impl CameraControl {
     /// Swings round the point ahead by a drag in pixels, and keeps looking at it.
     pub fn orbit(&self, camera: &mut Camera, pixels: Vec2) {
         let ahead = |camera: &Camera| direction(camera.pitch_deg, camera.heading_deg).as_dvec3();
-        let centre = position(camera) + ahead(camera) * ORBIT_DISTANCE_M;
+        let centre = position(camera) + ahead(camera) * self.pivot_m;
         let before = camera.clone();
         camera.heading_deg = (camera.heading_deg + pixels.x * DEGREES_PER_PIXEL * 2.0).rem_euclid(360.0);
         camera.pitch_deg = (camera.pitch_deg + pixels.y * DEGREES_PER_PIXEL * 2.0).clamp(-89.0, 89.0);
-        let target = centre - ahead(camera) * ORBIT_DISTANCE_M;
+        let target = centre - ahead(camera) * self.pivot_m;
         if target.y < HEIGHT_RANGE_M.0 {
             // Below the ground there is nothing to see: swing sideways only.
             camera.pitch_deg = before.pitch_deg;
         }
-        let target = centre - ahead(camera) * ORBIT_DISTANCE_M;
+        let target = centre - ahead(camera) * self.pivot_m;
         place(camera, target);
+    }
+
+    /// Shifts the camera across the view by a drag in pixels, so that the point ahead stays under the pointer.
+    pub fn pan(&self, camera: &mut Camera, pixels: Vec2, height_px: f32) {
+        let [_, right, up] = camera.axes();
+        let per_pixel = 2.0 * f64::from(camera.half_tangents([1, 1])[1]) * self.pivot_m / f64::from(height_px.max(1.0));
+        let step = up.as_dvec3() * f64::from(pixels.y) - right.as_dvec3() * f64::from(pixels.x);
+        place(camera, position(camera) + step * per_pixel);
+    }
+
+    /// Moves towards the point ahead by a drag in pixels, a share of the way for each, and away from it below 0.
+    pub fn dolly(&mut self, camera: &mut Camera, pixels: f32) {
+        let left = self.pivot_m * (-DOLLY_PER_PIXEL * f64::from(pixels)).exp();
+        let ahead = direction(camera.pitch_deg, camera.heading_deg).as_dvec3();
+        place(camera, position(camera) + ahead * (self.pivot_m - left));
+        self.pivot_m = left.clamp(*PIVOT_RANGE_M.start(), *PIVOT_RANGE_M.end());
+    }
+
+    /// Walks level by a drag in pixels: up is forwards, sideways turns.
+    pub fn walk(&self, camera: &mut Camera, pixels: Vec2) {
+        camera.heading_deg = (camera.heading_deg + pixels.x * DEGREES_PER_PIXEL).rem_euclid(360.0);
+        let ahead = direction(0.0, camera.heading_deg).as_dvec3();
+        place(camera, position(camera) - ahead * (f64::from(pixels.y) * DOLLY_PER_PIXEL * self.pivot_m));
     }
 }
 
@@ -143,10 +172,36 @@ mod tests {
     fn an_orbit_keeps_the_point_ahead() {
         let mut camera = Camera { height_m: 3000.0, pitch_deg: 0.0, ..Camera::default() };
         let ahead = |camera: &Camera| {
-            position(camera) + direction(camera.pitch_deg, camera.heading_deg).as_dvec3() * ORBIT_DISTANCE_M
+            position(camera) + direction(camera.pitch_deg, camera.heading_deg).as_dvec3() * PIVOT_M
         };
         let before = ahead(&camera);
         CameraControl::default().orbit(&mut camera, Vec2::new(120.0, -40.0));
         assert!(before.distance(ahead(&camera)) < 1.0, "{camera:?}");
+    }
+
+    #[test]
+    fn a_dolly_and_an_orbit_share_their_point_and_a_pan_follows_the_pointer() {
+        let start = Camera { height_m: 3000.0, pitch_deg: 0.0, heading_deg: 30.0, ..Camera::default() };
+        let point = position(&start) + direction(0.0, 30.0).as_dvec3() * PIVOT_M;
+        let (mut control, mut camera) = (CameraControl::default(), start.clone());
+        for _ in 0..20 {
+            control.dolly(&mut camera, 10.0);
+            control.orbit(&mut camera, Vec2::new(3.0, 0.0));
+        }
+        let left = position(&camera).distance(point);
+        assert!((left - PIVOT_M * (-0.8_f64).exp()).abs() < 5.0, "{left} m away");
+        control.dolly(&mut camera, -200.0);
+        assert!((position(&camera).distance(point) - PIVOT_M).abs() < 5.0, "and back");
+        let (control, mut camera) = (CameraControl::default(), start.clone());
+        control.pan(&mut camera, Vec2::new(100.0, 50.0), 500.0);
+        // The point was in the middle of the picture; now it is 100 pixels to the right and 50 below.
+        let way = (point - position(&camera)).as_vec3();
+        let [forward, right, up] = camera.axes();
+        let tangent = camera.half_tangents([1, 1])[1];
+        let pixels = |axis: glam::Vec3| way.dot(axis) / way.dot(forward) / tangent * 250.0;
+        assert!((pixels(right) - 100.0).abs() < 0.5 && (pixels(up) + 50.0).abs() < 0.5, "{} {}", pixels(right), pixels(up));
+        let mut camera = start;
+        control.walk(&mut camera, Vec2::new(0.0, -10.0));
+        assert!(camera.height_m == 3000.0 && position(&camera).distance(point) < PIVOT_M - 100.0, "forwards");
     }
 }

@@ -149,11 +149,11 @@ impl Document {
                 self.preset.scene.camera = camera.unwrap_or_else(|| self.preset.scene.camera.clone());
                 self.preset.animation.absorb(&self.preset.scene, self.time_secs);
             }
-            Action::MoveCamera(_) | Action::ResetCamera if !self.has_camera_keys() => {
+            Action::MoveCamera(_) | Action::ResetCamera | Action::GoToCamera(_) if !self.has_camera_keys() => {
                 let before = self.preset.scene.camera.clone();
                 self.change(action);
                 if self.preset.scene.camera != before {
-                    self.views.leave(&before, *action == Action::ResetCamera);
+                    self.views.leave(&before, !matches!(action, Action::MoveCamera(_)));
                 }
             }
             Action::Play(_) | Action::ResetTime | Action::Seek(_) => self.change(action),
@@ -262,6 +262,12 @@ impl Document {
             Action::SetQualityLevel(level) => self.quality = Quality::level(*level),
             Action::MoveCamera(camera) => scene.camera = camera.clone(),
             Action::ResetCamera => scene.camera = self.saved.at(self.time_secs).camera,
+            Action::GoToCamera(index) => {
+                if let Some(kept) = self.preset.cameras.get(*index) {
+                    scene.camera = kept.camera.clone();
+                }
+            }
+            Action::EditCameras { cameras, .. } => self.preset.cameras.clone_from(cameras),
             Action::TurnSun { elevation_deg, azimuth_deg } => self.turn_sun(*elevation_deg, *azimuth_deg),
             Action::ChangeExposure(stops) => {
                 scene.display.exposure_ev = (scene.display.exposure_ev + stops).clamp(-12.0, 24.0);

@@ -83,8 +83,13 @@ impl Hands {
         }
     }
 
-    /// What a gesture over the picture asks of the document.
-    pub(super) fn gesture(&mut self, window: &Window, document: &Document, gesture: Gesture) -> Option<Action> {
+    /// What a gesture over the picture, so many points high, asks of the document.
+    pub(super) fn gesture(
+        &mut self,
+        window: &Window,
+        (document, height_pt): (&Document, f32),
+        gesture: Gesture,
+    ) -> Option<Action> {
         let mut camera = document.preset().scene.camera.clone();
         match gesture {
             Gesture::StartLook => {
@@ -93,6 +98,18 @@ impl Hands {
             }
             Gesture::Orbit(drag) => {
                 self.control.orbit(&mut camera, Vec2::new(drag.x, drag.y));
+                Some(Action::MoveCamera(camera))
+            }
+            Gesture::Pan(drag) => {
+                self.control.pan(&mut camera, Vec2::new(drag.x, drag.y), height_pt);
+                Some(Action::MoveCamera(camera))
+            }
+            Gesture::Dolly(way) => {
+                self.control.dolly(&mut camera, way);
+                Some(Action::MoveCamera(camera))
+            }
+            Gesture::Walk(drag) => {
+                self.control.walk(&mut camera, Vec2::new(drag.x, drag.y));
                 Some(Action::MoveCamera(camera))
             }
             Gesture::DragSun(drag) => Some(Action::TurnSun {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::choices;
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
 
@@ -12,6 +13,18 @@ use crate::export::atomic::write_atomically;
 const MOST_RECENT: usize = 12;
 /// A larger file is none of this program's.
 const MOST_BYTES: u64 = 1 << 20;
+
+choices! {
+    /// Whose habits of the mouse the picture follows. The right button looks and flies in all of them.
+    pub enum Habit {
+        /// Middle orbits, with Shift it pans, with Ctrl it moves nearer. So does Shift with the left one.
+        Blender ("Blender"),
+        /// With Alt the left orbits, the middle pans, the right moves nearer.
+        Maya ("Maya"),
+        /// With Alt as in Maya; the middle pans, the left walks and turns.
+        Unreal ("Unreal"),
+    }
+}
 
 /// Everything that is kept between runs. Fields that a file does not have, or has too many of, do no harm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,11 +38,22 @@ pub struct Preferences {
     pub recent: Vec<PathBuf>,
     /// Presets with a star: short names of built-in ones, and files.
     pub favourites: BTreeSet<PathBuf>,
+    /// What the mouse does over the picture.
+    pub habit: Habit,
+    /// Whether the first steps have been told.
+    pub is_introduced: bool,
 }
 
 impl Default for Preferences {
     fn default() -> Self {
-        Self { light: None, zoom: 1.0, recent: Vec::new(), favourites: BTreeSet::new() }
+        Self {
+            light: None,
+            zoom: 1.0,
+            recent: Vec::new(),
+            favourites: BTreeSet::new(),
+            habit: Habit::Blender,
+            is_introduced: false,
+        }
     }
 }
 

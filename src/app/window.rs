@@ -376,7 +376,8 @@ impl App {
             live.draw_within(again.max(MOVING_PANELS));
         }
         for gesture in std::mem::take(&mut self.session.ui.viewport.gestures) {
-            if let Some(action) = live.hands.gesture(&live.window, &self.session.document, gesture) {
+            let height_pt = self.session.ui.viewport.rect.height();
+            if let Some(action) = live.hands.gesture(&live.window, (&self.session.document, height_pt), gesture) {
                 self.session.document.apply(&action);
             }
         }

@@ -151,6 +151,28 @@ impl Camera {
         }
     }
 
+    /// The point of a picture of this size that shows a direction, 0 to 1 from the top left; `None` if none does: behind a lens,
+    /// or below a dome. The inverse of [`Self::direction_through`].
+    pub fn point_of(&self, towards: Vec3, size: [u32; 2]) -> Option<[f32; 2]> {
+        if self.projection == Projection::Perspective {
+            let [forward, right, up] = self.axes();
+            let [across, high] = self.half_tangents(size);
+            let ahead = towards.dot(forward);
+            let point = [
+                0.5 + 0.5 * towards.dot(right) / (ahead * across),
+                0.5 - 0.5 * towards.dot(up) / (ahead * high),
+            ];
+            return (ahead > 1e-4).then_some(point);
+        }
+        let elevation = towards.y.clamp(-1.0, 1.0).asin().to_degrees();
+        let azimuth = towards.x.atan2(-towards.z).to_degrees();
+        let u = 0.5 + ((azimuth - self.heading_deg + 180.0).rem_euclid(360.0) - 180.0) / 360.0;
+        match self.projection {
+            Projection::Dome => (elevation >= 0.0).then_some([u, (90.0 - elevation) / 90.0]),
+            _ => Some([u, (90.0 - elevation) / 180.0]),
+        }
+    }
+
     /// Turns it towards a direction, with `up` as near to the picture's up as can be. Neither may be zero.
     pub fn look(&mut self, forward: Vec3, up: Vec3) {
         let forward = forward.normalize();
@@ -248,6 +270,22 @@ mod tests {
         assert!(camera.direction_through([0.1, 1.0], [2, 1]).abs_diff_eq(Vec3::NEG_Y, 1e-6), "straight down");
         camera.projection = Projection::Dome;
         assert!(camera.direction_through([0.5, 1.0], [2, 1]).abs_diff_eq(forward, 1e-6), "the horizon");
+    }
+
+    #[test]
+    fn points_and_directions_are_inverse() {
+        let mut camera =
+            Camera { heading_deg: 350.0, pitch_deg: 20.0, roll_deg: 12.0, field_of_view_deg: 70.0, ..Camera::default() };
+        for projection in [Projection::Perspective, Projection::Equirect, Projection::Dome] {
+            camera.projection = projection;
+            for point in [[0.5, 0.5], [0.1, 0.2], [0.9, 0.95]] {
+                let found = camera.point_of(camera.direction_through(point, [300, 200]), [300, 200]);
+                let [u, v] = found.expect("it is in the picture");
+                assert!((u - point[0]).abs() < 1e-4 && (v - point[1]).abs() < 1e-4, "{projection:?}: {u} {v}");
+            }
+        }
+        camera.projection = Projection::Perspective;
+        assert_eq!(camera.point_of(-camera.axes()[0], [3, 2]), None, "behind");
     }
 
     #[test]

@@ -19,7 +19,7 @@ pub(super) use self::write::quoted;
 use super::bounds::Fault;
 use super::nearest::did_you_mean;
 use super::param::{Choice, Params};
-use super::{Animation, Quality, QualityLevel, Scene};
+use super::{Animation, Camera, Quality, QualityLevel, Scene};
 
 /// The version that this program writes. Older ones are read too.
 pub const PRESET_VERSION: u32 = 2;
@@ -42,6 +42,21 @@ pub struct Preset {
     pub scene: Scene,
     /// What changes with time.
     pub animation: Animation,
+    /// Cameras to go to, at most [`MAX_BOOKMARKS`].
+    pub cameras: Vec<Bookmark>,
+}
+
+/// Most cameras that a preset keeps: there are nine keys for them.
+pub const MAX_BOOKMARKS: usize = 9;
+
+/// A camera with a name.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Bookmark {
+    /// Name for people.
+    pub name: String,
+    /// Where the eye is.
+    pub camera: Camera,
 }
 
 impl Default for Preset {
@@ -54,6 +69,7 @@ impl Default for Preset {
             quality: None,
             scene: Scene::default(),
             animation: Animation::default(),
+            cameras: Vec::new(),
         }
     }
 }
@@ -148,13 +164,14 @@ impl Preset {
         let source = Source { text, file };
         let mut tree = source.parse()?;
         let version = source.version(&tree)?;
-        source.check_header(&tree, &["version", "name", "description", "tags", "quality", "scene", "animation"])?;
+        source.check_header(&tree, &["version", "name", "description", "tags", "quality", "scene", "animation", "cameras"])?;
         source.check_texts(&tree)?;
         source.check_level(&tree)?;
         if let Some(scene) = field_mut(&mut tree, "scene") {
             migrate::rename_keys(scene, version);
             source.check_fields(&mut Scene::default(), scene)?;
         }
+        source.check_cameras(&tree)?;
         let mut preset: Self = source.read(&tree)?;
         preset.version = PRESET_VERSION;
         if let Some(message) = preset.scene.problems().into_iter().next() {
@@ -209,6 +226,15 @@ impl Preset {
         let animation = self.animation.to_ron(2);
         if !animation.is_empty() {
             push_group(&mut text, "animation", &animation);
+        }
+        if !self.cameras.is_empty() {
+            text.push_str("    cameras: [\n");
+            for bookmark in &self.cameras {
+                text.push_str(&format!("        (name: {}, camera: (\n", quoted(&bookmark.name)));
+                text.push_str(&write::fields(&mut bookmark.camera.clone(), 3));
+                text.push_str("        )),\n");
+            }
+            text.push_str("    ],\n");
         }
         text.push_str(")\n");
         text
@@ -327,6 +353,28 @@ impl Source<'_> {
         };
         let other = items.iter().find(|item| item.kind != Kind::Text);
         other.map_or(Ok(()), |item| Err(self.wrong_type("tags", item, "a list of strings")))
+    }
+
+    fn check_cameras(&self, tree: &Node) -> Result<(), PresetError> {
+        let Some(cameras) = tree.field("cameras") else { return Ok(()) };
+        let expected = "a list such as [(name: \"Hill\", camera: (height_m: 300.0))]";
+        let Kind::List(items) = &cameras.value.kind else {
+            return Err(self.wrong_type("cameras", &cameras.value, expected));
+        };
+        if items.len() > MAX_BOOKMARKS {
+            let message = format!("cameras: {} cameras, but at most {MAX_BOOKMARKS} can be kept", items.len());
+            return Err(PresetError::Rule { place: self.place(cameras.value.span.start), message });
+        }
+        for item in items {
+            if !matches!(item.kind, Kind::Fields(_)) {
+                return Err(self.wrong_type("cameras", item, expected));
+            }
+            self.check_header(item, &["name", "camera"])?;
+            if let Some(camera) = item.field("camera") {
+                self.check_fields(&mut Camera::default(), &camera.value)?;
+            }
+        }
+        Ok(())
     }
 
     fn check_level(&self, tree: &Node) -> Result<(), PresetError> {

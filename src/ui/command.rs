@@ -59,6 +59,10 @@ pub enum Command {
     Timeline,
     /// Camera back to the preset's.
     ResetCamera,
+    /// Keep the camera with the sky.
+    KeepCamera,
+    /// Directions over the picture on or off.
+    Guides,
     /// Half a stop brighter.
     Brighter,
     /// Half a stop darker.
@@ -85,12 +89,16 @@ pub enum Command {
     Theme,
     /// Sheet of shortcuts on or off.
     Shortcuts,
+    /// How to work with the program.
+    Help,
+    /// What the user likes.
+    Preferences,
 }
 
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 38] = [
+const TABLE: [(Command, Modifiers, Key, &str); 42] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -117,6 +125,8 @@ const TABLE: [(Command, Modifiers, Key, &str); 38] = [
     (Command::ResetTime, CTRL_SHIFT, Key::Home, "Time back to 0"),
     (Command::Timeline, Modifiers::COMMAND, Key::T, "Timeline"),
     (Command::ResetCamera, Modifiers::NONE, Key::Home, "Camera back to the preset’s"),
+    (Command::KeepCamera, Modifiers::COMMAND, Key::K, "Keep this camera"),
+    (Command::Guides, Modifiers::NONE, Key::G, "Guides: horizon, compass, thirds"),
     (Command::Brighter, Modifiers::NONE, Key::OpenBracket, "Half a stop brighter"),
     (Command::Darker, Modifiers::NONE, Key::CloseBracket, "Half a stop darker"),
     (Command::Presets, Modifiers::NONE, Key::F2, "Preset list"),
@@ -129,17 +139,21 @@ const TABLE: [(Command, Modifiers, Key, &str); 38] = [
     (Command::HideAll, Modifiers::NONE, Key::Tab, "Hide the panels"),
     (Command::FullScreen, Modifiers::NONE, Key::F11, "Full screen"),
     (Command::Theme, CTRL_SHIFT, Key::L, "Light or dark"),
+    (Command::Preferences, Modifiers::COMMAND, Key::Comma, "Preferences…"),
+    (Command::Help, Modifiers::SHIFT, Key::F1, "Help"),
     (Command::Shortcuts, Modifiers::NONE, Key::F1, "Shortcuts"),
 ];
 
 /// What mice and held keys do, for the sheet.
-pub(super) const GESTURES: [(&str, &str); 16] = [
+pub(super) const GESTURES: [(&str, &str); 18] = [
     ("Right mouse held", "Look around"),
     ("… with W A S D", "Fly forwards, left, back, right"),
     ("… with Q E", "Fly down, up"),
     ("… with wheel", "Speed of flight"),
     ("… with Shift, Ctrl", "Five times faster, slower"),
-    ("Middle mouse, Shift+left", "Orbit the point ahead"),
+    ("Other buttons", "Orbit, pan, nearer: as Preferences say"),
+    ("Wheel", "Nearer to the point ahead, or away from it"),
+    ("1 to 9", "Go to a kept camera"),
     ("L and left mouse", "Move the sun"),
     ("B held", "Show the chosen snapshot"),
     ("T held", "Show the truth while pictures are compared by Flip"),
@@ -174,7 +188,7 @@ impl Command {
     /// The key as people read it.
     pub(super) fn keys(self, context: &egui::Context) -> String {
         let keys = context.format_shortcut(&self.shortcut());
-        keys.replace("OpenBracket", "[").replace("CloseBracket", "]")
+        keys.replace("OpenBracket", "[").replace("CloseBracket", "]").replace("Comma", ",")
     }
 
     /// Does it: changes the state, or adds an action.
@@ -215,6 +229,14 @@ impl Command {
             Self::Panel => state.show_panel = !state.show_panel,
             Self::Histogram => state.histogram.is_open = !state.histogram.is_open,
             Self::FalseColour => actions.push(super::histogram::toggled(document)),
+            Self::KeepCamera => match super::cameras::kept_with_this(document) {
+                Some(action) => {
+                    actions.push(action);
+                    state.toasts.info("The camera is kept with the sky: View, Cameras, or its number");
+                }
+                None => state.toasts.error("Nine cameras are kept already; forget one first (View, Cameras)"),
+            },
+            Self::Guides => state.viewport.has_guides = !state.viewport.has_guides,
             Self::Timeline => state.timeline.is_open = !state.timeline.is_open,
             Self::Overlay => state.show_overlay = !state.show_overlay,
             Self::Lab => state.lab.is_open = !state.lab.is_open,
@@ -233,6 +255,8 @@ impl Command {
             }
             Self::FullScreen => ask(Request::ToggleFullScreen),
             Self::Theme => ui.ctx().set_theme(super::other(ui.ctx().theme())),
+            Self::Help => state.dialog = Some(Dialog::Help),
+            Self::Preferences => state.dialog = Some(Dialog::Preferences),
             Self::Shortcuts => {
                 let open = state.dialog == Some(Dialog::Shortcuts);
                 state.dialog = if open { None } else { Some(Dialog::Shortcuts) };
@@ -272,6 +296,7 @@ impl Command {
             Self::History => state.show_history,
             Self::Timeline => state.timeline.is_open,
             Self::Histogram => state.histogram.is_open,
+            Self::Guides => state.viewport.has_guides,
             Self::Vary => state.vary.is_open,
             Self::Inspect => state.inspector.is_on,
             _ => false,
@@ -284,6 +309,7 @@ impl Command {
             self,
             Self::Inspect
                 | Self::Histogram
+                | Self::Guides
                 | Self::PlayPause
                 | Self::ResetCamera
                 | Self::ResetTime

@@ -5,11 +5,15 @@ use std::path::PathBuf;
 use egui::{Grid, Id, Key, Modal, RichText, Ui};
 
 use super::command::GESTURES;
+use super::export_form::{self, ExportForm};
 use super::{Command, Library, State, row};
-use crate::app::action::{Action, Answer, Browse, Export, Request, Still};
+use crate::app::action::{Action, Answer, Browse, Request};
 use crate::app::document::Document;
-use crate::scene::QualityLevel;
-use crate::scene::param::Choice;
+use crate::app::preferences::{Habit, Preferences};
+use crate::scene::param::Choice as _;
+
+/// How to work with the program.
+const HELP: &str = include_str!("../../docs/help.md");
 
 /// The question on the screen.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,44 +44,14 @@ pub enum Dialog {
     },
     /// The sheet of shortcuts.
     Shortcuts,
-}
-
-/// The form for a still, as typed.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ExportForm {
-    /// What the still shows.
-    pub still: Still,
-    /// Width in pixels.
-    pub width: u32,
-    /// Height in pixels.
-    pub height: u32,
-    /// Whether it shows all directions.
-    pub is_panorama: bool,
-    /// Quality; `None` for that of the viewport.
-    pub level: Option<QualityLevel>,
-    /// Where it goes.
-    pub path: String,
-}
-
-impl ExportForm {
-    /// A full-HD EXR named after the document, at the level that its preset names.
-    pub fn for_document(document: &Document) -> Self {
-        let path = PathBuf::from(format!("{}.exr", file_name(document.name())));
-        let path = std::path::absolute(&path).unwrap_or(path).display().to_string();
-        let level = Some(document.preset().quality.unwrap_or(QualityLevel::High));
-        Self { still: Still::Exr, width: 1920, height: 1080, is_panorama: false, level, path }
-    }
-
-    /// Gives the path the ending that suits the still.
-    fn fit_ending(&mut self) {
-        let ending = if self.still == Still::Png { "png" } else { "exr" };
-        let path = PathBuf::from(&self.path).with_extension(ending);
-        self.path = path.display().to_string();
-    }
+    /// How to work with the program.
+    Help,
+    /// What the user likes.
+    Preferences,
 }
 
 /// A name as a file's name: no separators, no spaces.
-fn file_name(name: &str) -> String {
+pub(super) fn file_name(name: &str) -> String {
     let keep = |letter: char| if letter.is_alphanumeric() || letter == '-' { letter } else { '-' };
     let name: String = name.trim().to_lowercase().chars().map(keep).collect();
     if name.is_empty() { "sky".to_owned() } else { name }
@@ -96,24 +70,30 @@ impl Dialog {
         match self {
             Self::Open { path } | Self::SaveAs { path, .. } => *path = chosen,
             Self::Export(form) => form.path = chosen,
-            Self::Unsaved { .. } | Self::Recover { .. } | Self::Shortcuts => {}
+            Self::Unsaved { .. } | Self::Recover { .. } | Self::Shortcuts | Self::Help | Self::Preferences => {}
         }
     }
 }
 
 /// Whether the dialog stays.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Fate {
+pub(super) enum Fate {
     Stays,
     Closes,
 }
 
 /// Draws the question, if there is one.
-pub(super) fn show(context: &egui::Context, state: &mut State, document: &Document, actions: &mut Vec<Action>) {
+pub(super) fn show(
+    context: &egui::Context,
+    state: &mut State,
+    (document, preferences): (&Document, &mut Preferences),
+    actions: &mut Vec<Action>,
+) {
     let Some(mut dialog) = state.dialog.take() else { return };
     let screen = context.content_rect();
     let width = match dialog {
         Dialog::Shortcuts => 440.0_f32,
+        Dialog::Help => 620.0,
         _ => 460.0,
     };
     let modal = Modal::new(Id::unique("dialog")).show(context, |ui| {
@@ -122,9 +102,11 @@ pub(super) fn show(context: &egui::Context, state: &mut State, document: &Docume
             Dialog::Unsaved { before } => unsaved(ui, document, before, actions),
             Dialog::Open { path } => open(ui, path, actions),
             Dialog::SaveAs { name, path } => save_as(ui, name, path, (document, actions)),
-            Dialog::Export(form) => export(ui, form, actions),
+            Dialog::Export(form) => export_form::show(ui, form, actions),
             Dialog::Recover { name } => recover(ui, name, actions),
             Dialog::Shortcuts => shortcuts(ui, screen.height() - 130.0),
+            Dialog::Help => help(ui, screen.height() - 130.0),
+            Dialog::Preferences => liked(ui, preferences),
         }
     });
     let escaped = context.input(|input| input.key_pressed(Key::Escape));
@@ -158,7 +140,7 @@ fn unsaved(ui: &mut Ui, document: &Document, before: &str, actions: &mut Vec<Act
 }
 
 /// A path with a button for the system's dialog; returns whether Enter was pressed in it.
-fn path_field(ui: &mut Ui, path: &mut String, browse: Browse, actions: &mut Vec<Action>) -> bool {
+pub(super) fn path_field(ui: &mut Ui, path: &mut String, browse: Browse, actions: &mut Vec<Action>) -> bool {
     ui.label("Path");
     ui.horizontal(|ui| {
         let width = ui.available_width() - 84.0;
@@ -173,7 +155,7 @@ fn path_field(ui: &mut Ui, path: &mut String, browse: Browse, actions: &mut Vec<
 }
 
 /// The row of buttons under a form; `None` while neither was pressed.
-fn confirm(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
+pub(super) fn confirm(ui: &mut Ui, verb: &str, enabled: bool) -> Option<bool> {
     let mut answer = None;
     ui.add_space(8.0);
     ui.horizontal(|ui| {
@@ -233,75 +215,6 @@ fn save_as(
     }
 }
 
-fn export(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>) -> Fate {
-    ui.heading("Export still");
-    ui.label("Rendered at once in full; the preset is stored in the file, so that opening it restores this sky.");
-    let kinds = [
-        (Still::Exr, "EXR, linear light"),
-        (Still::LayersExr, "EXR, layers of light"),
-        (Still::CloudsExr, "EXR, clouds alone"),
-        (Still::Png, "PNG, as shown"),
-    ];
-    ui.horizontal_wrapped(|ui| {
-        for (still, title) in kinds {
-            if ui.selectable_label(form.still == still, title).clicked() {
-                form.still = still;
-                form.fit_ending();
-            }
-        }
-    });
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Size");
-        for (value, title) in [(&mut form.width, "Width"), (&mut form.height, "Height")] {
-            let response = ui.add(egui::DragValue::new(value).range(1..=16_384).suffix(" px"));
-            row::name(ui, &response, title, title);
-        }
-        let sizes = [("HD", [1920, 1080]), ("4K", [3840, 2160])];
-        let panoramas = [("Panorama 2K", [2048, 1024]), ("4K pano", [4096, 2048]), ("8K pano", [8192, 4096])];
-        for (index, (title, [width, height])) in sizes.into_iter().chain(panoramas).enumerate() {
-            if ui.button(title).on_hover_text(format!("{width} × {height}")).clicked() {
-                (form.width, form.height) = (width, height);
-                form.is_panorama = index >= sizes.len();
-            }
-        }
-    });
-    ui.checkbox(&mut form.is_panorama, "All directions (longitude across, latitude down)")
-        .on_hover_text("For lighting with the sky; the camera’s place counts, and its heading is the middle");
-    // Measured on a software adapter, whose memory is the processor's: so much for each pixel, and the program itself.
-    let bytes = if form.still == Still::LayersExr { 220.0 } else { 120.0 };
-    let megabytes = 300.0 + f64::from(form.width) * f64::from(form.height) * bytes / 1e6;
-    ui.weak(format!("Takes about {megabytes:.0} MB of memory"));
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Quality");
-        let viewport = ui.selectable_label(form.level.is_none(), "As in the window");
-        if viewport.on_hover_text("The settings of the Quality section").clicked() {
-            form.level = None;
-        }
-        for level in QualityLevel::ALL {
-            let chosen = form.level == Some(*level);
-            if ui.selectable_label(chosen, level.title()).on_hover_text(level.doc()).clicked() {
-                form.level = Some(*level);
-            }
-        }
-    });
-    path_field(ui, &mut form.path, Browse::Export, actions);
-    match confirm(ui, "Export", !form.path.trim().is_empty()) {
-        None => Fate::Stays,
-        Some(confirmed) => {
-            if confirmed {
-                actions.push(Action::Ask(Request::Export(Export {
-                    still: form.still,
-                    size: [form.width, form.height],
-                    is_panorama: form.is_panorama,
-                    level: form.level,
-                    path: PathBuf::from(form.path.trim()),
-                })));
-            }
-            Fate::Closes
-        }
-    }
-}
-
 fn recover(ui: &mut Ui, name: &str, actions: &mut Vec<Action>) -> Fate {
     ui.heading("Recover unsaved work?");
     ui.label(format!("The program ended without saving “{name}”. Its last state was kept."));
@@ -337,6 +250,50 @@ fn shortcuts(ui: &mut Ui, height: f32) -> Fate {
             }
         });
     });
+    ui.add_space(6.0);
+    if ui.button("Close").clicked() { Fate::Closes } else { Fate::Stays }
+}
+
+/// The help page: paragraphs below headings.
+fn help(ui: &mut Ui, height: f32) -> Fate {
+    let height = height.max(80.0);
+    egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
+        for line in HELP.lines() {
+            match line.strip_prefix("# ") {
+                Some(heading) => drop(ui.heading(heading)),
+                None if line.is_empty() => ui.add_space(8.0),
+                None => drop(ui.label(line)),
+            }
+        }
+    });
+    ui.add_space(6.0);
+    if ui.button("Close").clicked() { Fate::Closes } else { Fate::Stays }
+}
+
+fn liked(ui: &mut Ui, preferences: &mut Preferences) -> Fate {
+    ui.heading("Preferences");
+    Grid::new("preferences").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
+        ui.label("Theme and size");
+        ui.vertical(|ui| super::top_bar::theme_and_scale(ui));
+        ui.end_row();
+        ui.label("Mouse over the picture");
+        ui.horizontal(|ui| {
+            for habit in Habit::ALL {
+                let chosen = preferences.habit == *habit;
+                if ui.selectable_label(chosen, habit.title()).on_hover_text(habit.doc().trim()).clicked() {
+                    preferences.habit = *habit;
+                }
+            }
+        });
+        ui.end_row();
+        ui.label("First steps");
+        let mut shows = !preferences.is_introduced;
+        if ui.checkbox(&mut shows, "Show them over the picture").changed() {
+            preferences.is_introduced = !shows;
+        }
+        ui.end_row();
+    });
+    ui.weak(format!("{}: {}", preferences.habit.title(), preferences.habit.doc().trim()));
     ui.add_space(6.0);
     if ui.button("Close").clicked() { Fate::Closes } else { Fate::Stays }
 }

@@ -1,8 +1,11 @@
 //! The editor's panels. They see the document, never change it, and return what the user wants as [`Action`]s.
 
+mod cameras;
 mod clipboard;
 mod command;
 mod dialogs;
+mod export_form;
+mod guides;
 mod histogram;
 mod history;
 mod inspector;
@@ -23,7 +26,8 @@ mod vary;
 mod viewport;
 
 pub use command::Command;
-pub use dialogs::{Dialog, ExportForm};
+pub use dialogs::Dialog;
+pub use export_form::ExportForm;
 pub use histogram::HistogramState;
 pub use inspector::{InspectorState, Picked};
 pub use lab::{LabState, LabView, Measured, Phase};
@@ -210,7 +214,7 @@ pub fn show(
     }
     let central = egui::CentralPanel::no_frame().show(ui, |ui| {
         let beside = (&mut state.truth, &mut state.snapshots, &mut state.inspector);
-        viewport::show(ui, &mut state.viewport, beside, document);
+        viewport::show(ui, &mut state.viewport, beside, (document, preferences.habit));
     });
     let area = central.response.rect;
     if state.show_overlay && !state.hide_all {
@@ -233,15 +237,48 @@ pub fn show(
         history::show(ui.ctx(), area, document, (&mut state.show_history, &mut actions));
     }
     palette::show(ui, state, document, &mut actions);
+    if state.dialog.is_none() && !state.palette.is_open {
+        cameras::take_keys(ui, document, &mut actions);
+    }
     let held = (&document.preset().scene, document.quality());
     let is_asking = state.dialog.is_some() || state.palette.is_open;
     clipboard::take(ui, (&mut state.panel.copied, is_asking), held, &mut actions);
     // Who sets a key wants to see it.
     state.timeline.is_open |= actions.iter().any(|action| matches!(action, Action::SetKey(_)));
-    dialogs::show(ui.ctx(), state, document, &mut actions);
+    dialogs::show(ui.ctx(), state, (document, preferences), &mut actions);
+    if !preferences.is_introduced && !state.hide_all {
+        first_steps(ui.ctx(), area, preferences);
+    }
     state.toasts.show(ui.ctx(), area);
     actions
 }
+
+/// A strip over the picture for whoever is here for the first time.
+fn first_steps(context: &egui::Context, area: egui::Rect, preferences: &mut Preferences) {
+    let place = egui::Area::new(egui::Id::unique("first steps")).pivot(egui::Align2::CENTER_TOP);
+    place.fixed_pos(area.center_top() + egui::vec2(0.0, 10.0)).show(context, |ui| {
+        egui::Frame::window(&context.global_style()).inner_margin(8.0).show(ui, |ui| {
+            ui.set_max_width((area.width() - 40.0).clamp(120.0, 560.0));
+            ui.horizontal_wrapped(|ui| {
+                for (keys, what) in FIRST_STEPS {
+                    ui.label(egui::RichText::new(keys).strong());
+                    ui.label(what);
+                }
+                let known = ui.button("Got it");
+                row::name(ui, &known, "Got it", "first_steps.close");
+                preferences.is_introduced |= known.clicked();
+            });
+        });
+    });
+}
+
+const FIRST_STEPS: [(&str, &str); 5] = [
+    ("Right mouse", "look, with W A S D fly ·"),
+    ("Space", "play ·"),
+    ("Ctrl+Z", "undo anything ·"),
+    ("Ctrl+P", "find anything ·"),
+    ("Shift+F1", "help"),
+];
 
 /// The other theme.
 fn other(theme: Theme) -> Theme {

@@ -57,10 +57,11 @@ fn menus(
         });
     });
     ui.menu_button("Edit", |ui| {
-        let groups = [&[Command::Undo, Command::Redo, Command::History][..], &[Command::ViewBack, Command::ViewForth]];
+        let groups = [&[Command::Undo, Command::Redo, Command::History][..], &[Command::ViewBack, Command::ViewForth], &[Command::Preferences]];
         entries(ui, (state, document), &groups, &mut chosen);
     });
     ui.menu_button("View", |ui| {
+        ui.menu_button("Cameras", |ui| super::cameras::menu(ui, document, actions));
         let groups = [
             &[
                 Command::Presets,
@@ -71,7 +72,7 @@ fn menus(
                 Command::Inspect,
                 Command::Histogram,
             ][..],
-            &[Command::HideAll, Command::FullScreen],
+            &[Command::HideAll, Command::FullScreen, Command::Guides],
             &[Command::ResetCamera, Command::Brighter, Command::Darker, Command::FalseColour],
             &[Command::Refine, Command::Keep, Command::Compare],
         ];
@@ -81,7 +82,7 @@ fn menus(
         theme_and_scale(ui);
     });
     ui.menu_button("Help", |ui| {
-        entries(ui, (state, document), &[&[Command::Palette, Command::Shortcuts], &[Command::CopySystem]], &mut chosen);
+        entries(ui, (state, document), &[&[Command::Help, Command::Palette, Command::Shortcuts], &[Command::CopySystem]], &mut chosen);
     });
     if let Some(command) = chosen {
         command.run(ui, state, document, actions);
@@ -141,7 +142,7 @@ fn recent(ui: &mut Ui, preferences: &Preferences, actions: &mut Vec<Action>) {
     }
 }
 
-fn theme_and_scale(ui: &mut Ui) {
+pub(super) fn theme_and_scale(ui: &mut Ui) {
     ui.horizontal(|ui| {
         for (theme, title) in [(Theme::Light, "Light"), (Theme::Dark, "Dark")] {
             if ui.selectable_label(ui.ctx().theme() == theme, title).clicked() {

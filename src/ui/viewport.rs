@@ -6,6 +6,7 @@ use super::inspector::InspectorState;
 use super::snapshots::{self, Beside, SnapshotState};
 use super::truth::{Comparison, TruthState};
 use crate::app::document::Document;
+use crate::app::preferences::Habit;
 use crate::scene::param::Choice;
 
 /// What the picture lies on: a middle grey that changes no colour's looks, in both themes.
@@ -27,6 +28,12 @@ pub enum Gesture {
     StartLook,
     /// Orbit the point ahead.
     Orbit(Vec2),
+    /// Shift the camera across the view.
+    Pan(Vec2),
+    /// Move towards the point ahead, by the second coordinate upwards.
+    Dolly(f32),
+    /// Walk level, and turn.
+    Walk(Vec2),
     /// Move the sun.
     DragSun(Vec2),
 }
@@ -44,6 +51,8 @@ pub struct ViewportState {
     pub rect: Rect,
     /// What hands did.
     pub gestures: Vec<Gesture>,
+    /// Whether directions are drawn over the picture.
+    pub has_guides: bool,
 }
 
 impl Default for ViewportState {
@@ -54,6 +63,7 @@ impl Default for ViewportState {
             status: "Preparing the sky…".to_owned(),
             rect: Rect::from_min_size(Pos2::ZERO, Vec2::ZERO),
             gestures: Vec::new(),
+            has_guides: false,
         }
     }
 }
@@ -72,7 +82,7 @@ pub(super) fn show(
     ui: &mut Ui,
     state: &mut ViewportState,
     (truth, snapshots, inspector): (&mut TruthState, &mut SnapshotState, &mut InspectorState),
-    document: &Document,
+    (document, habit): (&Document, Habit),
 ) {
     let rect = ui.available_rect_before_wrap();
     state.rect = rect;
@@ -101,6 +111,9 @@ pub(super) fn show(
                 inspector.wish = Some([inside.x.clamp(0.0, 1.0), inside.y.clamp(0.0, 1.0)]);
                 inspector.picked = None;
             }
+            if state.has_guides {
+                super::guides::paint(&painter, place, &document.preset().scene);
+            }
             super::inspector::mark(&painter, place, inspector);
         }
         None => {
@@ -116,7 +129,7 @@ pub(super) fn show(
         painter.rect_filled(place.expand2(Vec2::new(8.0, 4.0)), 4.0, Color32::from_black_alpha(150));
         painter.galley(place.min, galley, Color32::WHITE);
     }
-    gestures(ui, &response, &mut state.gestures);
+    gestures(ui, &response, habit, &mut state.gestures);
 }
 
 fn image(painter: &egui::Painter, place: Rect, texture: egui::TextureId) {
@@ -232,9 +245,35 @@ fn divider(ui: &Ui, place: Rect, (name, key): (&str, &str), share: &mut f32) {
     painter.vline(x, place.y_range(), egui::Stroke::new(width, Color32::WHITE));
 }
 
-fn gestures(ui: &Ui, response: &egui::Response, gestures: &mut Vec<Gesture>) {
-    let pressed = ui.input(|input| input.pointer.button_pressed(PointerButton::Secondary));
-    if pressed && response.hovered() {
+/// What dragging with a button means.
+fn meaning(habit: Habit, button: PointerButton, modifiers: egui::Modifiers) -> Option<fn(Vec2) -> Gesture> {
+    use PointerButton::{Middle, Primary, Secondary};
+    let dolly: fn(Vec2) -> Gesture = |drag| Gesture::Dolly(drag.x - drag.y);
+    Some(match (habit, button) {
+        (Habit::Maya | Habit::Unreal, Primary) if modifiers.alt => Gesture::Orbit,
+        (Habit::Maya | Habit::Unreal, Secondary) if modifiers.alt => dolly,
+        (Habit::Maya, Middle) if modifiers.alt => Gesture::Pan,
+        (Habit::Unreal, Middle) => Gesture::Pan,
+        (Habit::Unreal, Primary) => Gesture::Walk,
+        (Habit::Blender, Middle) if modifiers.shift => Gesture::Pan,
+        (Habit::Blender, Middle) if modifiers.command => dolly,
+        (Habit::Blender, Middle) => Gesture::Orbit,
+        (Habit::Blender, Primary) if modifiers.shift => Gesture::Orbit,
+        _ => return None,
+    })
+}
+
+fn gestures(ui: &Ui, response: &egui::Response, habit: Habit, gestures: &mut Vec<Gesture>) {
+    use PointerButton::{Middle, Primary, Secondary};
+    let (pressed, modifiers, sun, wheel) = ui.input(|input| {
+        (
+            input.pointer.button_pressed(Secondary),
+            input.modifiers,
+            input.key_down(egui::Key::L),
+            input.smooth_scroll_delta().y,
+        )
+    });
+    if pressed && response.hovered() && meaning(habit, Secondary, modifiers).is_none() {
         gestures.push(Gesture::StartLook);
         ui.ctx().memory_mut(|memory| {
             if let Some(focused) = memory.focused() {
@@ -242,17 +281,19 @@ fn gestures(ui: &Ui, response: &egui::Response, gestures: &mut Vec<Gesture>) {
             }
         });
     }
+    if wheel != 0.0 && response.hovered() && !modifiers.command {
+        gestures.push(Gesture::Dolly(wheel));
+    }
     let drag = response.drag_delta();
     if drag == Vec2::ZERO {
         return;
     }
-    let (shift, sun) = ui.input(|input| (input.modifiers.shift, input.key_down(egui::Key::L)));
-    let left = response.dragged_by(PointerButton::Primary);
-    if left && sun {
+    if response.dragged_by(Primary) && sun {
         gestures.push(Gesture::DragSun(drag));
-    } else if response.dragged_by(PointerButton::Middle) || left && shift {
-        gestures.push(Gesture::Orbit(drag));
+        return;
     }
+    let held = [Primary, Middle, Secondary].into_iter().find(|button| response.dragged_by(*button));
+    gestures.extend(held.and_then(|button| meaning(habit, button, modifiers)).map(|gesture| gesture(drag)));
 }
 
 /// The largest rectangle of the picture's shape in the middle of `area`.

@@ -167,3 +167,30 @@ fn every_text_comes_back() {
     let preset = Preset { description: text.to_owned(), tags: vec![text.to_owned()], ..Preset::default() };
     assert_eq!(Preset::from_ron(&preset.to_ron(), "x.ron"), Ok(preset));
 }
+
+#[test]
+fn kept_cameras_come_back_and_faulty_ones_are_named() {
+    let mut preset = Preset::new("Seen from", Scene::default());
+    preset.cameras = vec![
+        Bookmark { name: "The \"hill\"".to_owned(), camera: Camera { height_m: 300.0, ..Camera::default() } },
+        Bookmark { name: String::new(), camera: Camera::default() },
+    ];
+    let text = preset.to_ron();
+    let read = Preset::from_ron(&text, "seen.ron").expect("it was just written");
+    assert_eq!((&read, read.to_ron()), (&preset, text.clone()));
+    for (from, to, says) in [
+        ("300.0", "-300.0", "height_m"),
+        ("height_m", "hight_m", "height_m"),
+        ("300.0", "high", "a number"),
+        ("name:", "title:", "title"),
+        ("cameras: [", "cameras: 3, tags: [", "cameras"),
+    ] {
+        let broken = text.replacen(from, to, 1);
+        let broken = if from == "name:" { text.replace("(name:", "(title:") } else { broken };
+        let error = Preset::from_ron(&broken, "seen.ron").expect_err(says).to_string();
+        assert!(error.starts_with("seen.ron:") && error.contains(says), "{from}: {error}");
+    }
+    preset.cameras = vec![Bookmark::default(); 10];
+    let error = Preset::from_ron(&preset.to_ron(), "many.ron").expect_err("ten").to_string();
+    assert!(error.contains("at most 9"), "{error}");
+}

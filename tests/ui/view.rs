@@ -1,0 +1,114 @@
+//! The picture and the camera: habits of the mouse, kept cameras, guides, preferences, first steps.
+
+use egui::{Modifiers, PointerButton, Pos2};
+use nephoscope::app::preferences::Habit;
+use nephoscope::ui::Gesture;
+
+use crate::*;
+
+fn drag(editor: &mut Editor, button: PointerButton, modifiers: Modifiers) -> Vec<Gesture> {
+    let at = editor.with_key("viewport").rect().center();
+    editor.harness.state_mut().ui.viewport.gestures.clear();
+    let press = |pressed| egui::Event::PointerButton { pos: at, button, pressed, modifiers };
+    editor.harness.event(egui::Event::ModifiersChanged(modifiers));
+    editor.harness.event(egui::Event::PointerMoved(at));
+    editor.harness.event(press(true));
+    editor.harness.step();
+    for step in 1..=3 {
+        editor.harness.event(egui::Event::PointerMoved(Pos2::new(at.x, at.y - 20.0 * step as f32)));
+        editor.harness.step();
+    }
+    editor.harness.event(press(false));
+    editor.harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    editor.harness.run();
+    editor.harness.state().ui.viewport.gestures.clone()
+}
+
+#[test]
+fn the_mouse_follows_the_habit_that_was_chosen() {
+    use PointerButton::{Middle, Primary, Secondary};
+    let mut editor = Editor::new();
+    let (none, alt, shift) = (Modifiers::NONE, Modifiers::ALT, Modifiers::SHIFT);
+    type Is = fn(&Gesture) -> bool;
+    let orbits: Is = |gesture| matches!(gesture, Gesture::Orbit(_));
+    let pans: Is = |gesture| matches!(gesture, Gesture::Pan(_));
+    let nears: Is = |gesture| matches!(gesture, Gesture::Dolly(way) if *way > 0.0);
+    let looks: Is = |gesture| matches!(gesture, Gesture::StartLook);
+    let walks: Is = |gesture| matches!(gesture, Gesture::Walk(_));
+    for (habit, button, modifiers, is) in [
+        (Habit::Blender, Middle, none, orbits),
+        (Habit::Blender, Middle, shift, pans),
+        (Habit::Blender, Middle, Modifiers::COMMAND, nears),
+        (Habit::Blender, Primary, shift, orbits),
+        (Habit::Blender, Secondary, none, looks),
+        (Habit::Maya, Primary, alt, orbits),
+        (Habit::Maya, Middle, alt, pans),
+        (Habit::Maya, Secondary, alt, nears),
+        (Habit::Maya, Secondary, none, looks),
+        (Habit::Unreal, Middle, none, pans),
+        (Habit::Unreal, Primary, none, walks),
+        (Habit::Unreal, Secondary, alt, nears),
+    ] {
+        editor.harness.state_mut().preferences.habit = habit;
+        let seen = drag(&mut editor, button, modifiers);
+        assert!(!seen.is_empty() && seen.iter().all(is), "{habit:?}, {button:?} with {modifiers:?}: {seen:?}");
+    }
+    editor.harness.state_mut().preferences.habit = Habit::Maya;
+    assert_eq!(drag(&mut editor, Middle, none), [], "Maya wants Alt");
+}
+
+#[test]
+fn cameras_are_kept_named_gone_to_and_forgotten() {
+    let mut editor = Editor::new();
+    let begun = editor.scene().camera.clone();
+    editor.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::K);
+    editor.harness.run();
+    let far = nephoscope::scene::Camera { east_m: 900.0, ..begun.clone() };
+    editor.harness.state_mut().perform(Action::MoveCamera(far.clone()));
+    editor.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::K);
+    editor.harness.run();
+    editor.press(egui::Key::Num1);
+    assert_eq!(editor.scene().camera, begun, "1 goes to the first");
+    editor.press(egui::Key::Num2);
+    assert_eq!(editor.scene().camera, far, "2 to the second");
+    editor.press(egui::Key::Num3);
+    assert_eq!(editor.scene().camera, far, "there is no third");
+    editor.harness.key_press_modifiers(Modifiers::ALT, egui::Key::ArrowLeft);
+    editor.harness.run();
+    assert_eq!(editor.scene().camera, begun, "a jump is gone back from");
+    editor.click_label("View");
+    editor.click_label_contains("Cameras");
+    editor.with_key("cameras.0.remove").click();
+    editor.harness.run();
+    let kept = &editor.document().preset().cameras;
+    assert_eq!((kept.len(), kept[0].name.as_str(), &kept[0].camera), (1, "Camera 2", &far));
+    editor.press(egui::Key::Escape);
+    editor.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Z);
+    editor.harness.run();
+    assert_eq!(editor.document().preset().cameras.len(), 2, "forgetting is undone");
+    assert_eq!(editor.scene().camera, begun, "and the camera stays");
+}
+
+#[test]
+fn preferences_and_help_open_and_first_steps_are_told_once() {
+    for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        let mut editor = Editor::sized([800.0, 600.0]);
+        editor.harness.ctx.set_theme(theme);
+        editor.harness.run();
+        editor.click("first_steps.close");
+        assert!(editor.harness.state().preferences.is_introduced);
+        assert!(!editor.has_label("Got it"));
+        editor.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::Comma);
+        editor.harness.run();
+        editor.click_label("Maya");
+        assert_eq!(editor.harness.state().preferences.habit, Habit::Maya);
+        editor.click_label("Close");
+        editor.harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::F1);
+        editor.harness.run();
+        assert_eq!(editor.harness.state().ui.dialog, Some(Dialog::Help));
+        assert!(editor.has_label("Taking away"));
+        editor.press(egui::Key::Escape);
+        editor.press(egui::Key::G);
+        assert!(editor.harness.state().ui.viewport.has_guides);
+    }
+}
