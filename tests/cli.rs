@@ -423,3 +423,87 @@ fn layers_in_a_file_sum_to_its_picture() {
     assert!(values("distance.X").iter().any(|value| *value > 1000.0), "clouds are far");
     refuses(&folder, &render("thesis", "x.png", &["--layers"]), 2, &["--layers needs an .exr"]);
 }
+
+#[test]
+fn pictures_go_out_in_all_formats_and_shapes() {
+    let folder = folder();
+    let there = |name: &str| folder.path().join(name);
+    renders(&folder, &render("fair_weather", "deep.png", &["--depth", "16"]));
+    let bytes = std::fs::read(there("deep.png")).expect("written");
+    assert_eq!((png_size(&there("deep.png")), bytes[24]), ([64, 36], 16), "16 bits");
+    renders(&folder, &["presets", "validate", "deep.png"]);
+    let args = ["pano", "fair_weather", "-o", "all.hdr", "--size", "64x32", "--quality", "draft"];
+    renders(&folder, &args);
+    assert!(std::fs::read(there("all.hdr")).expect("written").starts_with(b"#?RADIANCE"));
+    let cube = ["--projection", "cube", "--size", "16x16", "--quality", "draft"];
+    renders(&folder, &[&["pano", "fair_weather", "-o", "sky.exr"][..], &cube].concat());
+    for face in ["px", "nx", "py", "ny", "pz", "nz"] {
+        renders(&folder, &["presets", "validate", &format!("sky.{face}.exr")]);
+    }
+    let cross = ["--projection", "cross", "--size", "16x16", "--quality", "draft"];
+    renders(&folder, &[&["pano", "fair_weather", "-o", "cross.png"][..], &cross].concat());
+    assert_eq!(png_size(&there("cross.png")), [64, 48]);
+    refuses(&folder, &render("fair_weather", "a.exr", &["--depth", "16"]), 2, &["--depth 8 and 16 are for .png"]);
+    refuses(&folder, &render("fair_weather", "a.hdr", &["--layers"]), 2, &["--layers needs an .exr"]);
+    let wide = ["pano", "fair_weather", "-o", "a.exr", "--projection", "cube", "--size", "32x16"];
+    refuses(&folder, &wide, 2, &["a face of a cube is square"]);
+}
+
+#[test]
+fn what_a_sky_is_made_from_goes_out() {
+    let folder = folder();
+    let export = |what: &'static str, file: &'static str| ["export", "fair_weather", "--what", what, "-o", file];
+    for (what, file, size) in [
+        ("weather-map", "map.png", "map.png 512x512"),
+        ("detail-noise", "noise.exr", "noise.exr 32x1024"),
+        ("sky-view", "sky.exr", "sky.exr 256x144"),
+    ] {
+        let output = renders(&folder, &export(what, file));
+        assert!(stdout(&output).contains(size), "{what}: {}", stdout(&output));
+    }
+    refuses(&folder, &export("wether-map", "a.exr"), 2, &["did you mean weather-map?"]);
+    refuses(&folder, &export("curl-noise", "a.exr"), 2, &["has no curl-noise"]);
+    refuses(&folder, &export("weather-map", "a.jpg"), 2, &["neither in .exr nor in .png"]);
+}
+
+#[test]
+fn a_film_follows_the_keys_of_its_sky() {
+    let folder = folder();
+    let key = |time: f32, value: &str| format!("(time_secs: {time:?}, value: \"{value}\", ease: Linear)");
+    let keys = format!("{}, {}", key(0.0, "-5.0"), key(2.0, "60.0"));
+    let animation = format!("(duration_secs: 2.0, tracks: [(key: \"sun.elevation_deg\", keys: [{keys}])])");
+    write(&folder, "dawn.ron", &format!("(version: 2, scene: (), animation: {animation})"));
+    // An ffmpeg that says what it was asked for.
+    let tools = folder.path().join("tools");
+    std::fs::create_dir(&tools).expect("a folder");
+    let script = "#!/bin/sh\n[ \"$1\" = -version ] && exit 0\nfor last; do :; done\ncat \"$9\" > \"$last\"\n";
+    std::fs::write(tools.join("ffmpeg"), script).expect("written");
+    let film = ["sequence", "dawn.ron", "-o", "f.##.png", "--fps", "1", "--size", "16x9", "--quality", "draft"];
+    let run = |path: &Path| {
+        let mut command = command(PROGRAM, &folder);
+        command.args(film).args(["--video", "film.mp4"]).env("PATH", path);
+        command.output().expect("the program starts")
+    };
+    let without = run(Path::new("/nowhere"));
+    assert_eq!(without.status.code(), Some(2), "{}", stderr(&without));
+    assert!(stderr(&without).contains("install it"), "{}", stderr(&without));
+    assert!(!folder.path().join("f.00.png").exists(), "nothing is begun that cannot end");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        let mode = std::fs::Permissions::from_mode(0o755);
+        std::fs::set_permissions(tools.join("ffmpeg"), mode).expect("it may run");
+        let path = std::env::join_paths([tools.as_path(), Path::new("/usr/bin"), Path::new("/bin")]).expect("a path");
+        let output = run(Path::new(&path));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let list = std::fs::read_to_string(folder.path().join("film.mp4")).expect("the list of frames");
+        assert!(list.contains("f.00.png") && list.contains("f.01.png") && !list.contains("f.02.png"), "{list}");
+    }
+    #[cfg(not(unix))]
+    renders(&folder, &film);
+    let brightness = |name: &str| {
+        let image = image::open(folder.path().join(name)).expect("it was written").to_rgb8();
+        image.pixels().map(|pixel| u64::from(pixel[1])).sum::<u64>()
+    };
+    assert!(brightness("f.01.png") > 2 * brightness("f.00.png"), "the sun has risen");
+}

@@ -250,31 +250,66 @@ pub enum Browse {
     Parameter(String),
 }
 
-/// What a still shows and how it is stored.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Still {
-    /// The whole picture as linear light, EXR.
-    #[default]
-    Exr,
-    /// The same with layers of light beside it, EXR.
-    LayersExr,
-    /// The clouds alone with their opacity, EXR.
-    CloudsExr,
-    /// The picture as on the screen, PNG.
-    Png,
+choices! {
+    /// What a still holds and how it is stored.
+    pub enum Still {
+        /// The whole picture as linear light.
+        Exr ("EXR, linear light"),
+        /// The same with layers of light beside it, which sum to the picture.
+        LayersExr ("EXR, layers of light"),
+        /// The clouds alone with their opacity.
+        CloudsExr ("EXR, clouds alone"),
+        /// Linear light with a common exponent for the three colours; holds no sky.
+        Radiance ("Radiance HDR"),
+        /// The picture as on the screen.
+        Png ("PNG, as shown"),
+        /// The same, finer: for grading.
+        Png16 ("PNG, 16 bits"),
+    }
 }
 
-/// A still to be rendered.
-#[derive(Clone, Debug, PartialEq, Eq)]
+choices! {
+    /// What directions a still shows.
+    pub enum Shape {
+        /// What the preset's camera does.
+        Camera ("As the camera"),
+        /// All: longitude across, latitude down, the camera's heading in the middle.
+        Panorama ("Panorama"),
+        /// All, as six square files: px is east, py up, pz north.
+        CubeFaces ("Cube, six files"),
+        /// All, as one file: a lying cross with north in its middle.
+        CubeCross ("Cube, cross"),
+    }
+}
+
+/// The frames of a sequence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sequence {
+    /// The first frame; it shows this many frames after the beginning of time.
+    pub first: u32,
+    /// The last one.
+    pub last: u32,
+    /// From one to the next.
+    pub step: u32,
+    /// Frames per second of the clock.
+    pub fps: f64,
+    /// Whether files that exist are left as they are.
+    pub keeps: bool,
+}
+
+/// A still to be rendered, or a sequence of them.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Export {
-    /// What it shows.
+    /// What it holds.
     pub still: Still,
-    /// Width and height in pixels.
+    /// Width and height in pixels; of a face, if it is a cube.
     pub size: [u32; 2],
-    /// Whether it shows all directions, rather than what the preset's camera does.
-    pub is_panorama: bool,
+    /// What it shows.
+    pub shape: Shape,
     /// The quality; `None` for that of the viewport.
     pub level: Option<QualityLevel>,
+    /// Its frames, if it is a sequence; then the path has a run of `#`.
+    pub frames: Option<Sequence>,
     /// Where it goes.
     pub path: PathBuf,
 }

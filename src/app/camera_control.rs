@@ -171,9 +171,8 @@ mod tests {
     #[test]
     fn an_orbit_keeps_the_point_ahead() {
         let mut camera = Camera { height_m: 3000.0, pitch_deg: 0.0, ..Camera::default() };
-        let ahead = |camera: &Camera| {
-            position(camera) + direction(camera.pitch_deg, camera.heading_deg).as_dvec3() * PIVOT_M
-        };
+        let ahead =
+            |camera: &Camera| position(camera) + direction(camera.pitch_deg, camera.heading_deg).as_dvec3() * PIVOT_M;
         let before = ahead(&camera);
         CameraControl::default().orbit(&mut camera, Vec2::new(120.0, -40.0));
         assert!(before.distance(ahead(&camera)) < 1.0, "{camera:?}");
@@ -199,7 +198,12 @@ mod tests {
         let [forward, right, up] = camera.axes();
         let tangent = camera.half_tangents([1, 1])[1];
         let pixels = |axis: glam::Vec3| way.dot(axis) / way.dot(forward) / tangent * 250.0;
-        assert!((pixels(right) - 100.0).abs() < 0.5 && (pixels(up) + 50.0).abs() < 0.5, "{} {}", pixels(right), pixels(up));
+        assert!(
+            (pixels(right) - 100.0).abs() < 0.5 && (pixels(up) + 50.0).abs() < 0.5,
+            "{} {}",
+            pixels(right),
+            pixels(up)
+        );
         let mut camera = start;
         control.walk(&mut camera, Vec2::new(0.0, -10.0));
         assert!(camera.height_m == 3000.0 && position(&camera).distance(point) < PIVOT_M - 100.0, "forwards");

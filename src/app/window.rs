@@ -14,7 +14,7 @@ use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Fullscreen, Window, WindowId};
 
-use super::action::{self, Browse, Export, Request, Still};
+use super::action::{self, Browse, Export, Request, Shape, Still};
 use super::egui_glue::{Egui, Place};
 use super::hands::Hands;
 use super::lab::{Lab, News};
@@ -487,8 +487,9 @@ impl App {
                     export: Export {
                         still: Still::Png,
                         size: image.0,
-                        is_panorama: false,
+                        shape: Shape::Camera,
                         level: None,
+                        frames: None,
                         path: self.session.folders.pictures.clone(),
                     },
                 };

@@ -9,14 +9,15 @@ use std::time::{Duration, Instant};
 
 use winit::event_loop::EventLoopProxy;
 
-use super::action::{Browse, Export, Still};
+use super::action::{Browse, Export, Shape, Still};
 use super::lab::News;
 use super::truth::{CompareJob, Compared};
 use crate::export::exr::ExrOptions;
-use crate::files::{About, save_exr, save_layers, save_png};
+use crate::files::{About, Content, CubeLayout, StillFile, save_png};
 use crate::gpu::Gpu;
+use crate::images::pattern::FramePattern;
 use crate::render::Renderer;
-use crate::scene::{Frame, Output, Preset, Quality};
+use crate::scene::{Preset, Quality};
 
 /// What reaches the event loop from outside the window.
 #[derive(Debug)]
@@ -179,7 +180,9 @@ async fn dialog(purpose: &Browse, start: &Path) -> Option<rfd::FileHandle> {
     match purpose {
         Browse::Open => dialog.add_filter("Skies", &skies).pick_file().await,
         Browse::SaveAs => dialog.add_filter("Preset", &["ron"]).set_file_name("sky.ron").save_file().await,
-        Browse::Export => dialog.add_filter("Pictures", &["exr", "png"]).set_file_name("sky.exr").save_file().await,
+        Browse::Export => {
+            dialog.add_filter("Pictures", &["exr", "hdr", "png"]).set_file_name("sky.exr").save_file().await
+        }
         Browse::Parameter(key) if key.ends_with(".grid") => {
             dialog.add_filter("Voxel grids", &["npy", "vol"]).pick_file().await
         }
@@ -192,37 +195,52 @@ fn free_name(folder: &Path) -> PathBuf {
     (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(10_000))
 }
 
-/// A renderer of its own on the same device, so that the window's keeps its history and its picture. Returns whether the
-/// picture was written, rather than given up.
+/// What the file of a still holds.
+fn content(still: Still) -> Content {
+    match still {
+        Still::Exr => Content::Linear(ExrOptions::default()),
+        Still::LayersExr => Content::Layers(ExrOptions::default()),
+        Still::CloudsExr => Content::CloudsAlone(ExrOptions::default()),
+        Still::Radiance => Content::Radiance,
+        Still::Png => Content::Display,
+        Still::Png16 => Content::Display16,
+    }
+}
+
+/// Files and times of all pictures that are to be written.
+fn pictures(job: &StillJob) -> anyhow::Result<Vec<(PathBuf, f64)>> {
+    let Some(frames) = job.export.frames else { return Ok(vec![(job.export.path.clone(), job.time_secs)]) };
+    let pattern = FramePattern::parse(&job.export.path)?;
+    anyhow::ensure!(pattern.is_sequence(), "a sequence needs #### for the frame number in its path");
+    let speed = job.preset.animation.speed;
+    let numbers = (frames.first..=frames.last).step_by(frames.step.max(1) as usize);
+    let all = numbers.map(|frame| (pattern.path_of(frame), speed * f64::from(frame) / frames.fps));
+    Ok(all.filter(|(path, _)| !frames.keeps || !path.exists()).collect())
+}
+
+/// A renderer of its own on the same device, so that the window's keeps its history and its picture. Returns whether all was
+/// written, rather than given up.
 fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result<bool> {
     let mut renderer = Renderer::new(&job.gpu)?;
-    let output = match job.export.still {
-        Still::Exr | Still::LayersExr => Output::Linear,
-        Still::CloudsExr => Output::CloudsAlone,
-        Still::Png => Output::Display,
-    };
-    let frame = Frame {
-        scene: &job.preset.scene,
-        quality: &job.quality,
-        size: job.export.size,
-        time_secs: job.time_secs,
-        output,
-    };
-    let path = &job.export.path;
-    if job.export.still == Still::LayersExr {
-        let Some(layers) = renderer.layers(&frame, proceed)?.filter(|_| proceed(1.0)) else { return Ok(false) };
-        save_layers(path, layers, &job.about(), ExrOptions::default())?;
-        return Ok(true);
-    }
-    // The last moment to give it up; then it is written.
-    let Some(still) = renderer.still_while(&frame, proceed)?.filter(|_| proceed(1.0)) else { return Ok(false) };
-    if job.export.still == Still::Png {
-        let (size, pixels) = renderer.rgba8_of(&still.into_display())?;
-        save_png(path, size, &pixels, &job.about())?;
-    } else {
-        let image = still.picture(&renderer)?.image;
-        drop(still);
-        save_exr(path, image, &job.about(), ExrOptions::default())?;
+    let pictures = pictures(job)?;
+    for (index, (path, time_secs)) in pictures.iter().enumerate() {
+        let mut preset = job.preset.clone();
+        preset.scene = preset.at(*time_secs);
+        let file = StillFile {
+            path,
+            content: content(job.export.still),
+            size: job.export.size,
+            cube: match job.export.shape {
+                Shape::Camera | Shape::Panorama => None,
+                Shape::CubeFaces => Some(CubeLayout::Faces),
+                Shape::CubeCross => Some(CubeLayout::Cross),
+            },
+            about: About { preset: &preset, quality: &job.quality, time_secs: *time_secs },
+        };
+        let mut part = |share: f32| proceed((index as f32 + share) / pictures.len() as f32);
+        if !file.render(&mut renderer, &mut part)? {
+            return Ok(false);
+        }
     }
     Ok(true)
 }

@@ -8,12 +8,14 @@ mod args;
 mod bench;
 mod editor;
 mod error;
+mod export;
 mod grid;
 mod info;
 mod integrate;
 mod interrupt;
 mod presets;
 mod render;
+mod sequence;
 mod skies;
 mod verify;
 
@@ -46,8 +48,14 @@ const EXIT_CODES: &str = "Without a command the editor opens; without a display,
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Renders a sky to a PNG or EXR, or to a sequence of them.
-    Render(render::RenderArgs),
+    /// Renders a sky to a PNG, an EXR or a Radiance file.
+    Render(Box<render::RenderArgs>),
+    /// Renders all directions of a sky, to light other scenes with: a panorama, or a cube map by `--projection cube`.
+    Pano(Box<render::RenderArgs>),
+    /// Renders numbered frames; a run that was interrupted goes on where it was.
+    Sequence(Box<sequence::SequenceArgs>),
+    /// Writes a map, a noise or a table that a sky is made from.
+    Export(export::ExportArgs),
     /// Lists, checks and shows presets.
     #[command(subcommand)]
     Presets(presets::PresetsCommand),
@@ -93,6 +101,9 @@ pub fn run(cli: Cli) -> Result<()> {
     match cli.command {
         None => editor::run(cli.scene, cli.edits, &cli.device),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Pano(args)) => render::run(&args.clone().all_directions()),
+        Some(Command::Sequence(args)) => sequence::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
         Some(Command::Presets(command)) => presets::run(&command),
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),

@@ -15,7 +15,9 @@ use super::interrupt::{self, Interrupted};
 use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
-use crate::files::{self, About, KeptPrograms, save_exr, save_layers, save_png};
+use crate::files::{
+    self, About, Content, CubeLayout, FileError, KeptPrograms, StillError, StillFile, save_exr, save_png,
+};
 use crate::gpu::Gpu;
 use crate::images::pattern::{FramePattern, parse_frame_range};
 use crate::plan::Forced;
@@ -24,16 +26,17 @@ use crate::render::truth::Goal;
 use crate::scene::edit;
 use crate::scene::{Frame, Output, Preset, Projection, Quality, UpdateFraction};
 
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct RenderArgs {
     /// A preset (.ron), an exported .exr or .png, a voxel grid (.json), or the name of a built-in sky.
     scene: PathBuf,
-    /// File to write, .png or .exr; `####` in its name stands for the frame number.
+    /// File to write, .png, .exr or .hdr; `####` in its name stands for the frame number.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Width and height in pixels, such as `640x360`, `hd` or `4k`.
-    #[arg(long, value_parser = args::size, default_value = "1920x1080")]
-    size: [u32; 2],
+    /// [default: 1920x1080, 4096x2048 for a panorama, 1024x1024 for each face of a cube]
+    #[arg(long, value_parser = args::size)]
+    size: Option<[u32; 2]>,
     /// How directions map onto the picture; as the sky says if not given.
     #[arg(long)]
     projection: Option<ProjectionArg>,
@@ -65,7 +68,7 @@ pub(super) struct RenderArgs {
     /// shafts, disc, backdrop; and the clouds' transmittance and distance.
     #[arg(long, conflicts_with = "clouds_only")]
     layers: bool,
-    /// Bits per sample of an EXR; by default half, or float where half does not reach.
+    /// Bits of a sample: of an EXR half, or float where half does not reach; of a PNG 8.
     #[arg(long)]
     depth: Option<DepthArg>,
     /// Codec of an EXR.
@@ -96,6 +99,10 @@ enum ProjectionArg {
     Equirect,
     /// The upper half of all directions: the zenith at the top, the horizon at the bottom
     Dome,
+    /// A cube map as six files: `sky.px.exr` is east, `py` up, `pz` north.
+    Cube,
+    /// A cube map as one lying cross.
+    Cross,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -104,6 +111,12 @@ enum DepthArg {
     Half,
     /// 32 bits.
     Float,
+    /// 8 bits, of a PNG.
+    #[value(name = "8")]
+    Eight,
+    /// 16 bits, of a PNG.
+    #[value(name = "16")]
+    Sixteen,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -126,7 +139,7 @@ impl RenderArgs {
         Self {
             scene,
             output,
-            size: [1280, 720],
+            size: Some([1280, 720]),
             projection: None,
             time: 0.0,
             camera: None,
@@ -147,11 +160,76 @@ impl RenderArgs {
         }
     }
 
+    /// The same of all directions, if nothing else was said.
+    pub(super) fn all_directions(mut self) -> Self {
+        self.projection.get_or_insert(ProjectionArg::Equirect);
+        self
+    }
+
+    /// Frames from the first to the last of the sky's own film, if none were named.
+    pub(super) fn fit_frames(&mut self) -> Result<()> {
+        if self.frames.is_none() {
+            let animation = files::open(&self.scene)?.preset.animation;
+            let frames = animation.duration_secs / animation.speed.max(1e-3) * self.fps;
+            let last = (frames.round() - 1.0).max(0.0);
+            self.frames = Some(format!("0-{last:.0}"));
+        }
+        Ok(())
+    }
+
+    /// Where pictures go.
+    pub(super) fn output(&self) -> &Path {
+        &self.output
+    }
+
+    /// Frames per second.
+    pub(super) fn fps(&self) -> f64 {
+        self.fps
+    }
+
+    /// The files of all frames, those that exist included.
+    pub(super) fn files(&self) -> Result<Vec<PathBuf>> {
+        let pattern = FramePattern::parse(&self.output)?;
+        let frames = parse_frame_range(self.frames.as_deref().unwrap_or_default())?;
+        Ok(frames.into_iter().map(|frame| pattern.path_of(frame)).collect())
+    }
+
+    /// What the files hold, by the ending of their names and what was asked for.
+    fn content(&self) -> Result<Content> {
+        let path = &self.output;
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let wants_exr = match (self.clouds_only, self.layers) {
+            (true, _) => Some("--clouds-only needs an .exr, which keeps light and opacity apart"),
+            (_, true) => Some("--layers needs an .exr, which holds more than one picture"),
+            _ => None,
+        };
+        let refuse = |said: &str| Err(Usage(said.to_owned()).into());
+        match (extension.as_deref(), wants_exr, self.depth) {
+            (Some("exr"), _, Some(DepthArg::Eight | DepthArg::Sixteen)) => {
+                refuse("--depth 8 and 16 are for .png; an EXR has half or float")
+            }
+            (Some("exr"), ..) if self.clouds_only => Ok(Content::CloudsAlone(self.exr_options())),
+            (Some("exr"), ..) if self.layers => Ok(Content::Layers(self.exr_options())),
+            (Some("exr"), ..) => Ok(Content::Linear(self.exr_options())),
+            (Some("png" | "hdr"), Some(said), _) => refuse(said),
+            (Some("png"), _, None | Some(DepthArg::Eight)) => Ok(Content::Display),
+            (Some("png"), _, Some(DepthArg::Sixteen)) => Ok(Content::Display16),
+            (Some("png"), _, Some(DepthArg::Half | DepthArg::Float)) => {
+                refuse("--depth half and float are for .exr; a PNG has 8 or 16 bits")
+            }
+            (Some("hdr"), _, Some(_)) => refuse("--depth is for .exr and .png; a Radiance file has one depth"),
+            (Some("hdr"), ..) => Ok(Content::Radiance),
+            // A device such as /dev/full has no extension; what it is matters more.
+            _ if path.exists() && !path.is_file() => Err(ExportError::NotAFile { path: path.clone() }.into()),
+            _ => refuse(&format!("-o {} ends neither in .png nor in .exr nor in .hdr", path.display())),
+        }
+    }
+
     fn exr_options(&self) -> ExrOptions {
         let depth = match self.depth {
-            None => ExrDepth::Auto,
             Some(DepthArg::Half) => ExrDepth::Half,
             Some(DepthArg::Float) => ExrDepth::Float,
+            _ => ExrDepth::Auto,
         };
         let compression = match self.compression {
             CompressionArg::Zip => ExrCompression::Zip,
@@ -164,18 +242,13 @@ impl RenderArgs {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Png,
-    Exr,
-}
-
 /// Everything decided and checked before a device is opened.
 struct Job {
     preset: Preset,
     quality: Quality,
-    format: Format,
-    output: Output,
+    content: Content,
+    size: [u32; 2],
+    cube: Option<CubeLayout>,
     goal: Option<Goal>,
     forced: Forced,
     /// File and time of each picture.
@@ -184,16 +257,7 @@ struct Job {
 
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self> {
-        let format = format_of(&args.output)?;
-        if args.clouds_only && format == Format::Png {
-            return Err(Usage("--clouds-only needs an .exr, which keeps light and opacity apart".to_owned()).into());
-        }
-        if args.layers && format == Format::Png {
-            return Err(Usage("--layers needs an .exr, which holds more than one picture".to_owned()).into());
-        }
-        if args.depth.is_some() && format == Format::Png {
-            return Err(Usage("--depth is for .exr; a PNG has 8 bits".to_owned()).into());
-        }
+        let content = args.content()?;
         let sky = files::open(&args.scene)?;
         let mut quality = args::quality(args.quality.as_deref(), &sky)?;
         // A still has no frames before it to take pixels from.
@@ -214,31 +278,35 @@ impl Job {
             Some(ProjectionArg::Perspective) => preset.scene.camera.projection = Projection::Perspective,
             Some(ProjectionArg::Equirect) => preset.scene.camera.projection = Projection::Equirect,
             Some(ProjectionArg::Dome) => preset.scene.camera.projection = Projection::Dome,
+            Some(ProjectionArg::Cube | ProjectionArg::Cross) => {}
         }
-        let output = match (format, args.clouds_only) {
-            (Format::Png, _) => Output::Display,
-            (Format::Exr, false) => Output::Linear,
-            (Format::Exr, true) => Output::CloudsAlone,
+        let cube = match args.projection {
+            Some(ProjectionArg::Cube) => Some(CubeLayout::Faces),
+            Some(ProjectionArg::Cross) => Some(CubeLayout::Cross),
+            _ => None,
+        };
+        let size = match (cube, args.size, preset.scene.camera.projection) {
+            (Some(_), Some([width, height]), _) if width != height => {
+                return Err(Usage(format!("a face of a cube is square: --size {width}x{width}, say")).into());
+            }
+            (_, Some(size), _) => size,
+            (Some(_), None, _) => [1024, 1024],
+            (None, None, Projection::Perspective) => [1920, 1080],
+            (None, None, Projection::Equirect) => [4096, 2048],
+            (None, None, Projection::Dome) => [4096, 1024],
         };
         let is_final = args.quality.as_deref().is_some_and(|quality| quality.eq_ignore_ascii_case("final"));
         let goal = args.integration.goal(is_final)?;
+        if goal.is_some() && (cube.is_some() || matches!(content, Content::Display16 | Content::Radiance)) {
+            let said = "cube maps, Radiance files and 16-bit PNG are for the realtime march; choose --quality high";
+            return Err(Usage(said.to_owned()).into());
+        }
         if args.layers && goal.is_some() {
             return Err(Usage("--layers is for the realtime march; choose --quality high".to_owned()).into());
         }
         let forced = args::forced(&args.force)?;
         let pictures = pictures(args, preset.animation.speed)?;
-        Ok(Self { preset, quality, format, output, goal, forced, pictures })
-    }
-}
-
-fn format_of(path: &Path) -> Result<Format> {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    match extension.as_deref() {
-        Some("png") => Ok(Format::Png),
-        Some("exr") => Ok(Format::Exr),
-        // A device such as /dev/full has no extension; what it is matters more.
-        _ if path.exists() && !path.is_file() => Err(ExportError::NotAFile { path: path.to_owned() }.into()),
-        _ => Err(Usage(format!("-o {} ends neither in .png nor in .exr", path.display())).into()),
+        Ok(Self { preset, quality, content, size, cube, goal, forced, pictures })
     }
 }
 
@@ -307,7 +375,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<()> {
             programs.keep(&gpu);
         }
         let seconds = begun.elapsed().as_secs_f64();
-        bar.suspend(|| report(args, path, *time_secs, seconds))?;
+        bar.suspend(|| report((args, job.size), path, *time_secs, seconds))?;
         if interrupt::is_asked() {
             bar.finish_and_clear();
             return Err(Interrupted(format!("{} is the last picture, with what was finished", path.display())).into());
@@ -323,51 +391,48 @@ fn write_picture(
     (path, time_secs): (&Path, f64),
     tell: &dyn Fn(f32),
 ) -> Result<()> {
-    let Job { preset, quality, output, .. } = job;
-    let scene = preset.at(time_secs);
-    let frame = Frame { scene: &scene, quality, size: args.size, time_secs, output: *output };
-    let about = About { preset, quality, time_secs };
+    let preset = Preset { scene: job.preset.at(time_secs), ..job.preset.clone() };
+    let (quality, content) = (&job.quality, job.content);
+    let frame = Frame { scene: &preset.scene, quality, size: job.size, time_secs, output: content.output() };
+    let about = About { preset: &preset, quality, time_secs };
     let failed = || format!("{} could not be rendered", path.display());
     let not_finished = || Interrupted(format!("{} is not finished and was not written", path.display())).into();
-    let mut proceed = |share: f32| {
-        tell(share);
-        !interrupt::is_asked()
-    };
-    if args.layers {
-        let layers = renderer.layers(&frame, &mut proceed).with_context(failed)?;
-        let Some(layers) = layers else { return Err(not_finished()) };
-        save_layers(path, layers, &about, args.exr_options())?;
-        return Ok(());
-    }
-    let (display, linear) = match job.goal {
-        None => {
-            let still = renderer.still_while(&frame, &mut proceed).with_context(failed)?;
-            let Some(still) = still else { return Err(not_finished()) };
-            let linear =
-                (job.format == Format::Exr).then(|| still.picture(renderer)).transpose()?.map(|whole| whole.image);
-            (still.into_display(), linear)
-        }
-        Some(goal) => {
-            let truth = converge(renderer, &frame, goal).with_context(failed)?;
-            if !truth.progress().is_done && job.pictures.len() > 1 {
-                // The next run would take it for a finished one.
-                return Err(not_finished());
-            }
-            eprintln!("{}: {}", path.display(), describe(goal, &truth.progress()));
-            let linear =
-                (job.format == Format::Exr).then(|| truth.picture(renderer)).transpose()?.map(|whole| whole.image);
-            (truth.into_display(), linear)
-        }
-    };
-    let is_broken = linear.as_ref().is_some_and(|linear| linear.rgba.iter().flatten().any(|v| !v.is_finite()));
-    if args.watch || is_broken {
+    if args.watch {
         watch(renderer, &frame).with_context(|| format!("{} was not written", path.display()))?;
     }
-    anyhow::ensure!(!is_broken, "{} was not written: it holds values that are not finite", path.display());
-    match linear {
-        Some(linear) => save_exr(path, linear, &about, args.exr_options()).map(|_| ())?,
-        None => {
-            let (size, pixels) = renderer.rgba8_of(&display)?;
+    let Some(goal) = job.goal else {
+        let mut proceed = |share: f32| {
+            tell(share);
+            !interrupt::is_asked()
+        };
+        let file = StillFile { path, content, size: job.size, cube: job.cube, about };
+        return match file.render(renderer, &mut proceed) {
+            Ok(true) => Ok(()),
+            Ok(false) => Err(not_finished()),
+            Err(StillError::Render(error)) => Err(anyhow::Error::new(error).context(failed())),
+            Err(error @ StillError::CubeOfLayers) => Err(Usage(error.to_string()).into()),
+            Err(StillError::File(error)) => {
+                if matches!(error, FileError::Export(ExportError::NonFinite { .. })) {
+                    // The pass that wrote it says more than the pixel.
+                    watch(renderer, &frame).with_context(|| format!("{} was not written", path.display()))?;
+                }
+                Err(error.into())
+            }
+        };
+    };
+    let truth = converge(renderer, &frame, goal).with_context(failed)?;
+    if !truth.progress().is_done && job.pictures.len() > 1 {
+        // The next run would take it for a finished one.
+        return Err(not_finished());
+    }
+    eprintln!("{}: {}", path.display(), describe(goal, &truth.progress()));
+    match content {
+        Content::Linear(options) | Content::CloudsAlone(options) => {
+            let image = truth.picture(renderer)?.image;
+            save_exr(path, image, &about, options)?;
+        }
+        _ => {
+            let (size, pixels) = renderer.rgba8_of(&truth.into_display())?;
             save_png(path, size, &pixels, &about)?;
         }
     }
@@ -394,8 +459,7 @@ fn progress(count: usize) -> ProgressBar {
     bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-fn report(args: &RenderArgs, path: &Path, time_secs: f64, seconds: f64) -> Result<()> {
-    let [width, height] = args.size;
+fn report((args, [width, height]): (&RenderArgs, [u32; 2]), path: &Path, time_secs: f64, seconds: f64) -> Result<()> {
     if args.json {
         let line = json!({
             "path": path.display().to_string(),

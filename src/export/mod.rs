@@ -6,6 +6,7 @@
 
 pub mod atomic;
 pub mod exr;
+pub mod hdr;
 pub mod png;
 pub mod preset;
 

@@ -7,6 +7,7 @@ mod grid;
 mod open;
 mod picture;
 mod programs;
+mod still;
 
 use std::fs::File;
 use std::io::Read as _;
@@ -14,8 +15,9 @@ use std::path::{Path, PathBuf};
 
 pub use grid::{VoxelFormat, save_grid, save_vdb};
 pub use open::{Origin, Sky, open};
-pub use picture::{About, save_exr, save_layers, save_png};
+pub use picture::{About, save_exr, save_png, save_table};
 pub use programs::KeptPrograms;
+pub use still::{Content, CubeLayout, StillError, StillFile};
 
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;

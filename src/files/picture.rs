@@ -9,7 +9,8 @@ use crate::export::exr::{EmbeddedFile, ExrDepth, ExrLayers, ExrMetadata, ExrOpti
 use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME, write_exr_with_layers};
 use crate::export::png::{PngPixels, write_png};
 use crate::images::FloatImage;
-use crate::render::{Layers, LinearImage};
+use crate::render::LinearImage;
+use crate::render::tables::Table;
 use crate::scene::edit::files_of;
 use crate::scene::{Camera, PRESET_VERSION, Preset, Projection, Quality, quality_to_ron};
 
@@ -29,6 +30,20 @@ pub struct About<'a> {
 /// # Errors
 /// If the bytes do not fit the size, or the file cannot be written.
 pub fn save_png(path: &Path, size: [u32; 2], rgba: &[u8], about: &About<'_>) -> Result<(), FileError> {
+    if rgba.iter().skip(3).step_by(4).all(|alpha| *alpha == u8::MAX) {
+        let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
+        return save_png_pixels(path, size, PngPixels::Rgb8(&rgb), about);
+    }
+    save_png_pixels(path, size, PngPixels::Rgba8(rgba), about)
+}
+
+/// The same with pixels of any kind.
+pub(super) fn save_png_pixels(
+    path: &Path,
+    size: [u32; 2],
+    pixels: PngPixels<'_>,
+    about: &About<'_>,
+) -> Result<(), FileError> {
     let (preset, _) = portable(about.preset);
     let text = [
         ("Software".to_owned(), ExrMetadata::default().software),
@@ -38,11 +53,7 @@ pub fn save_png(path: &Path, size: [u32; 2], rgba: &[u8], about: &About<'_>) -> 
         (QUALITY.to_owned(), quality_to_ron(about.quality)),
         (format!("{PREFIX}timeSecs"), about.time_secs.to_string()),
     ];
-    if rgba.iter().skip(3).step_by(4).all(|alpha| *alpha == u8::MAX) {
-        let rgb: Vec<u8> = rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
-        return Ok(write_png(path, size, PngPixels::Rgb8(&rgb), &text)?);
-    }
-    Ok(write_png(path, size, PngPixels::Rgba8(rgba), &text)?)
+    Ok(write_png(path, size, pixels, &text)?)
 }
 
 /// Writes linear light as EXR with preset, quality, map images and camera; returns the depth that was used.
@@ -55,32 +66,19 @@ pub fn save_exr(
     about: &About<'_>,
     options: ExrOptions,
 ) -> Result<ExrDepth, FileError> {
-    save_with(path, (image, ExrLayers::default()), about, options)
+    let camera = Some(&about.preset.scene.camera);
+    save_with(path, (image, ExrLayers::default()), (about, camera), options)
 }
 
-/// The same with the layers of light, the clouds' transmittance and their distance along each ray.
-///
-/// # Errors
-/// As [`save_exr`].
-pub fn save_layers(path: &Path, layers: Layers, about: &About<'_>, options: ExrOptions) -> Result<ExrDepth, FileError> {
-    let extra = ExrLayers {
-        lights: layers.lights.into_iter().map(|(name, light)| (name.to_owned(), light)).collect(),
-        data: vec![
-            ("transmittance.A".to_owned(), layers.transmittance),
-            ("distance.X".to_owned(), layers.beauty.distance_m.clone()),
-        ],
-    };
-    save_with(path, (layers.beauty, extra), about, options)
-}
-
-fn save_with(
+/// The same with layers, and with the camera's matrices if one camera made the picture.
+pub(super) fn save_with(
     path: &Path,
     (image, layers): (LinearImage, ExrLayers),
-    about: &About<'_>,
+    (about, camera): (&About<'_>, Option<&Camera>),
     options: ExrOptions,
 ) -> Result<ExrDepth, FileError> {
     let (preset, files) = portable(about.preset);
-    let camera = matrices(&about.preset.scene.camera, image.size);
+    let camera = camera.and_then(|camera| matrices(camera, image.size));
     let metadata = ExrMetadata {
         comments: preset.name.clone(),
         preset_ron: preset.to_ron(),
@@ -96,6 +94,25 @@ fn save_with(
     let [width, height] = image.size;
     let image = FloatImage { width, height, rgba: image.rgba, depth: None, crop: None };
     Ok(write_exr_with_layers(path, (&image, &layers), &metadata, options)?)
+}
+
+/// Writes values of a map, a noise or a table: as EXR with all bits, or as PNG, red, green and blue of 0 to 1 in 16 bits.
+///
+/// # Errors
+/// As [`save_exr`] and [`save_png`].
+pub fn save_table(path: &Path, table: Table, about: &About<'_>) -> Result<(), FileError> {
+    let is_png = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
+    if is_png {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0 to 65535")]
+        let word = |value: f32| (value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16;
+        let words: Vec<u16> =
+            table.rgba.iter().flat_map(|[red, green, blue, _]| [word(*red), word(*green), word(*blue)]).collect();
+        return save_png_pixels(path, table.size, PngPixels::Rgb16(&words), about);
+    }
+    let distance_m = vec![0.0; table.rgba.len()];
+    let image = LinearImage { size: table.size, rgba: table.rgba, distance_m, candela_per_unit: 1.0 };
+    let options = ExrOptions { depth: ExrDepth::Float, ..ExrOptions::default() };
+    save_with(path, (image, ExrLayers::default()), (about, None), options).map(|_| ())
 }
 
 /// The preset with map images named without their folders, and the images themselves.

@@ -2,6 +2,7 @@
 //!
 //! Pixels and file names only; nothing here knows of clouds, scenes or devices.
 
+pub mod cross;
 pub mod map;
 pub mod pattern;
 pub mod voxels;

@@ -18,6 +18,7 @@ mod samples;
 mod schedule;
 pub mod shaders;
 mod still;
+pub mod tables;
 mod targets;
 pub mod truth;
 pub mod uniforms;

@@ -196,6 +196,29 @@ impl Still {
         display
     }
 
+    /// The finished picture as it is shown, with 16 bits for each colour: of several samples a pixel, whose mean is kept as half
+    /// floats of displayed light, 11 bits fine. One sample has the 8 bits of [`Self::display`].
+    ///
+    /// # Errors
+    /// [`RenderError::Gpu`] if the device fails.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0 to 65535")]
+    pub fn display16(&self, renderer: &Renderer) -> Result<([u32; 2], Vec<[u16; 3]>), RenderError> {
+        let size = self.targets.size();
+        let Some(means) = &self.targets.means else {
+            let bytes = readback::texture(&renderer.gpu, &self.targets.display[0])?;
+            let wide = |byte: u8| u16::from(byte) * 257;
+            return Ok((size, bytes.chunks_exact(4).map(|p| [wide(p[0]), wide(p[1]), wide(p[2])]).collect()));
+        };
+        let shown = readback::rgba(&renderer.gpu, &means[self.samples.side()].shown)?;
+        let encoded = |light: f32| {
+            let light = light.clamp(0.0, 1.0);
+            // IEC 61966-2-1.
+            let value = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+            (value * 65_535.0 + 0.5) as u16
+        };
+        Ok((size, shown.iter().map(|[red, green, blue, _]| [encoded(*red), encoded(*green), encoded(*blue)]).collect()))
+    }
+
     /// What the passes took together, in milliseconds; `None` where a pass could not be timed, or before the end.
     pub fn total_ms(&self) -> Option<f64> {
         let all = self.times.iter().map(|time| time.millis);

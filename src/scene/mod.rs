@@ -8,6 +8,7 @@ mod animation;
 pub mod bounds;
 pub mod builtin;
 pub mod clip;
+mod cube;
 pub mod edit;
 pub mod expression;
 mod frame;
@@ -25,6 +26,7 @@ mod sun_position;
 mod weather;
 
 pub use animation::{Animation, DURATION_RANGE_SECS, Ease, Keyframe, SPEED_RANGE, Track};
+pub use cube::{CUBE_FACES, CubeFace};
 pub use frame::{Frame, Output};
 pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
 pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};

@@ -158,10 +158,8 @@ impl Camera {
             let [forward, right, up] = self.axes();
             let [across, high] = self.half_tangents(size);
             let ahead = towards.dot(forward);
-            let point = [
-                0.5 + 0.5 * towards.dot(right) / (ahead * across),
-                0.5 - 0.5 * towards.dot(up) / (ahead * high),
-            ];
+            let point =
+                [0.5 + 0.5 * towards.dot(right) / (ahead * across), 0.5 - 0.5 * towards.dot(up) / (ahead * high)];
             return (ahead > 1e-4).then_some(point);
         }
         let elevation = towards.y.clamp(-1.0, 1.0).asin().to_degrees();
@@ -274,8 +272,13 @@ mod tests {
 
     #[test]
     fn points_and_directions_are_inverse() {
-        let mut camera =
-            Camera { heading_deg: 350.0, pitch_deg: 20.0, roll_deg: 12.0, field_of_view_deg: 70.0, ..Camera::default() };
+        let mut camera = Camera {
+            heading_deg: 350.0,
+            pitch_deg: 20.0,
+            roll_deg: 12.0,
+            field_of_view_deg: 70.0,
+            ..Camera::default()
+        };
         for projection in [Projection::Perspective, Projection::Equirect, Projection::Dome] {
             camera.projection = projection;
             for point in [[0.5, 0.5], [0.1, 0.2], [0.9, 0.95]] {

@@ -164,7 +164,10 @@ impl Preset {
         let source = Source { text, file };
         let mut tree = source.parse()?;
         let version = source.version(&tree)?;
-        source.check_header(&tree, &["version", "name", "description", "tags", "quality", "scene", "animation", "cameras"])?;
+        source.check_header(
+            &tree,
+            &["version", "name", "description", "tags", "quality", "scene", "animation", "cameras"],
+        )?;
         source.check_texts(&tree)?;
         source.check_level(&tree)?;
         if let Some(scene) = field_mut(&mut tree, "scene") {

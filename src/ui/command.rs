@@ -106,7 +106,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 42] = [
     (Command::Save, Modifiers::COMMAND, Key::S, "Save"),
     (Command::Screenshot, Modifiers::NONE, Key::F12, "Screenshot"),
     (Command::FalseColour, CTRL_SHIFT, Key::E, "False colour"),
-    (Command::Export, Modifiers::COMMAND, Key::E, "Export still…"),
+    (Command::Export, Modifiers::COMMAND, Key::E, "Export…"),
     (Command::Quit, Modifiers::COMMAND, Key::Q, "Quit"),
     (Command::Redo, CTRL_SHIFT, Key::Z, "Redo"),
     (Command::Undo, Modifiers::COMMAND, Key::Z, "Undo"),

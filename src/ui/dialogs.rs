@@ -274,7 +274,7 @@ fn liked(ui: &mut Ui, preferences: &mut Preferences) -> Fate {
     ui.heading("Preferences");
     Grid::new("preferences").num_columns(2).spacing([18.0, 8.0]).show(ui, |ui| {
         ui.label("Theme and size");
-        ui.vertical(|ui| super::top_bar::theme_and_scale(ui));
+        ui.vertical(super::top_bar::theme_and_scale);
         ui.end_row();
         ui.label("Mouse over the picture");
         ui.horizontal(|ui| {

@@ -6,7 +6,7 @@ use egui::Ui;
 
 use super::dialogs::{Fate, confirm, file_name, path_field};
 use super::row;
-use crate::app::action::{Action, Browse, Export, Request, Still};
+use crate::app::action::{Action, Browse, Export, Request, Sequence, Shape, Still};
 use crate::app::document::Document;
 use crate::scene::QualityLevel;
 use crate::scene::param::Choice as _;
@@ -20,12 +20,16 @@ pub struct ExportForm {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Whether it shows all directions.
-    pub is_panorama: bool,
+    /// What it shows.
+    pub shape: Shape,
+    /// Its frames, if it is a sequence.
+    pub frames: Option<Sequence>,
     /// Quality; `None` for that of the viewport.
     pub level: Option<QualityLevel>,
     /// Where it goes.
     pub path: String,
+    /// The frame at which the document's animation ends.
+    pub last_frame: u32,
 }
 
 impl ExportForm {
@@ -34,52 +38,128 @@ impl ExportForm {
         let path = PathBuf::from(format!("{}.exr", file_name(document.name())));
         let path = std::path::absolute(&path).unwrap_or(path).display().to_string();
         let level = Some(document.preset().quality.unwrap_or(QualityLevel::High));
-        Self { still: Still::Exr, width: 1920, height: 1080, is_panorama: false, level, path }
+        let animation = document.animation();
+        let film_secs = animation.duration_secs / animation.speed.max(1e-3);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+        let last_frame = ((film_secs * 24.0).round() as u32).clamp(1, 99_999) - 1;
+        Self {
+            still: Still::Exr,
+            width: 1920,
+            height: 1080,
+            shape: Shape::Camera,
+            frames: None,
+            level,
+            path,
+            last_frame,
+        }
+    }
+
+    /// A size that suits what is shown.
+    fn fit_size(&mut self) {
+        (self.width, self.height) = match self.shape {
+            Shape::Camera => (1920, 1080),
+            Shape::Panorama => (4096, 2048),
+            Shape::CubeFaces | Shape::CubeCross => (1024, 1024),
+        };
+    }
+
+    /// Gives the path a place for the frame's number, or takes it away.
+    fn fit_number(&mut self) {
+        let path = PathBuf::from(&self.path);
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let name = match (self.frames.is_some(), name.contains('#'), name.rsplit_once('.')) {
+            (true, false, Some((stem, ending))) => format!("{stem}.####.{ending}"),
+            (true, false, None) => format!("{name}.####"),
+            (false, true, _) => name.replace(".####", "").replace('#', ""),
+            _ => name,
+        };
+        self.path = path.with_file_name(name).display().to_string();
     }
 
     /// Gives the path the ending that suits the still.
     fn fit_ending(&mut self) {
-        let ending = if self.still == Still::Png { "png" } else { "exr" };
+        let ending = match self.still {
+            Still::Png | Still::Png16 => "png",
+            Still::Radiance => "hdr",
+            Still::Exr | Still::LayersExr | Still::CloudsExr => "exr",
+        };
         let path = PathBuf::from(&self.path).with_extension(ending);
         self.path = path.display().to_string();
     }
 }
 
+fn sizes(ui: &mut Ui, form: &mut ExportForm) {
+    ui.label("Size");
+    let is_cube = matches!(form.shape, Shape::CubeFaces | Shape::CubeCross);
+    let response = ui.add(egui::DragValue::new(&mut form.width).range(1..=16_384).suffix(" px"));
+    row::name(ui, &response, "Width", "Width");
+    if !is_cube {
+        let response = ui.add(egui::DragValue::new(&mut form.height).range(1..=16_384).suffix(" px"));
+        row::name(ui, &response, "Height", "Height");
+    }
+    let known: &[(&str, [u32; 2])] = match form.shape {
+        Shape::Camera => &[("HD", [1920, 1080]), ("4K", [3840, 2160])],
+        Shape::Panorama => &[("2K", [2048, 1024]), ("4K", [4096, 2048]), ("8K", [8192, 4096]), ("16K", [16_384, 8192])],
+        Shape::CubeFaces | Shape::CubeCross => &[("512", [512, 512]), ("1K", [1024, 1024]), ("2K", [2048, 2048])],
+    };
+    for (title, [width, height]) in known {
+        if ui.button(*title).on_hover_text(format!("{width} × {height}")).clicked() {
+            (form.width, form.height) = (*width, *height);
+        }
+    }
+    if is_cube {
+        form.height = form.width;
+    }
+}
+
+fn frames(ui: &mut Ui, form: &mut ExportForm) {
+    let mut is_sequence = form.frames.is_some();
+    if ui.checkbox(&mut is_sequence, "Sequence").on_hover_text("Numbered files, one for each frame").changed() {
+        form.frames =
+            is_sequence.then_some(Sequence { first: 0, last: form.last_frame, step: 1, fps: 24.0, keeps: true });
+        form.fit_number();
+    }
+    let Some(frames) = &mut form.frames else { return };
+    for (value, range, title) in [
+        (&mut frames.first, 0..=999_999, "First frame"),
+        (&mut frames.last, 0..=999_999, "Last frame"),
+        (&mut frames.step, 1..=1000, "Step"),
+    ] {
+        let field = ui.add(egui::DragValue::new(value).range(range)).on_hover_text(title);
+        row::name(ui, &field, title, title);
+    }
+    frames.last = frames.last.max(frames.first);
+    let field = ui.add(egui::DragValue::new(&mut frames.fps).range(0.1..=240.0).suffix(" fps"));
+    row::name(ui, &field, "Frames per second", "Frames per second");
+    ui.checkbox(&mut frames.keeps, "Keep what is there").on_hover_text("Files that exist are not rendered again");
+}
+
 /// Draws the form.
 pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>) -> Fate {
-    ui.heading("Export still");
+    ui.heading("Export pictures");
     ui.label("Rendered at once in full; the preset is stored in the file, so that opening it restores this sky.");
-    let kinds = [
-        (Still::Exr, "EXR, linear light"),
-        (Still::LayersExr, "EXR, layers of light"),
-        (Still::CloudsExr, "EXR, clouds alone"),
-        (Still::Png, "PNG, as shown"),
-    ];
     ui.horizontal_wrapped(|ui| {
-        for (still, title) in kinds {
-            if ui.selectable_label(form.still == still, title).clicked() {
-                form.still = still;
+        for still in Still::ALL {
+            let choice = ui.selectable_label(form.still == *still, still.title());
+            if choice.on_hover_text(still.doc().trim()).clicked() {
+                form.still = *still;
                 form.fit_ending();
             }
         }
     });
     ui.horizontal_wrapped(|ui| {
-        ui.label("Size");
-        for (value, title) in [(&mut form.width, "Width"), (&mut form.height, "Height")] {
-            let response = ui.add(egui::DragValue::new(value).range(1..=16_384).suffix(" px"));
-            row::name(ui, &response, title, title);
-        }
-        let sizes = [("HD", [1920, 1080]), ("4K", [3840, 2160])];
-        let panoramas = [("Panorama 2K", [2048, 1024]), ("4K pano", [4096, 2048]), ("8K pano", [8192, 4096])];
-        for (index, (title, [width, height])) in sizes.into_iter().chain(panoramas).enumerate() {
-            if ui.button(title).on_hover_text(format!("{width} × {height}")).clicked() {
-                (form.width, form.height) = (width, height);
-                form.is_panorama = index >= sizes.len();
+        ui.label("Shows");
+        for shape in Shape::ALL {
+            let possible = form.still != Still::LayersExr || matches!(shape, Shape::Camera | Shape::Panorama);
+            let choice = ui.add_enabled(possible, egui::Button::selectable(form.shape == *shape, shape.title()));
+            if choice.on_hover_text(shape.doc().trim()).clicked() {
+                form.shape = *shape;
+                form.fit_size();
             }
         }
     });
-    ui.checkbox(&mut form.is_panorama, "All directions (longitude across, latitude down)")
-        .on_hover_text("For lighting with the sky; the camera’s place counts, and its heading is the middle");
+    ui.horizontal_wrapped(|ui| sizes(ui, form));
+    ui.horizontal_wrapped(|ui| frames(ui, form));
     // Measured on a software adapter, whose memory is the processor's: so much for each pixel, and the program itself.
     let bytes = if form.still == Still::LayersExr { 220.0 } else { 120.0 };
     let megabytes = 300.0 + f64::from(form.width) * f64::from(form.height) * bytes / 1e6;
@@ -105,8 +185,9 @@ pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>
                 actions.push(Action::Ask(Request::Export(Export {
                     still: form.still,
                     size: [form.width, form.height],
-                    is_panorama: form.is_panorama,
+                    shape: form.shape,
                     level: form.level,
+                    frames: form.frames,
                     path: PathBuf::from(form.path.trim()),
                 })));
             }
@@ -114,4 +195,3 @@ pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>
         }
     }
 }
-

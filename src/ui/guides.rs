@@ -48,7 +48,8 @@ pub(super) fn paint(painter: &Painter, place: Rect, scene: &Scene) {
         painter.vline(place.left() + share * place.width(), place.y_range(), thirds);
         painter.hline(place.x_range(), place.top() + share * place.height(), thirds);
     }
-    for (name, azimuth) in [("N", 0.0), ("NE", 45.0), ("E", 90.0), ("SE", 135.0), ("S", 180.0), ("SW", 225.0), ("W", 270.0), ("NW", 315.0)]
+    for (name, azimuth) in
+        [("N", 0.0), ("NE", 45.0), ("E", 90.0), ("SE", 135.0), ("S", 180.0), ("SW", 225.0), ("W", 270.0), ("NW", 315.0)]
     {
         if let Some(point) = at(0.0, azimuth).filter(|point| place.contains(*point)) {
             label(&painter, point, name);

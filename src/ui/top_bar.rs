@@ -57,7 +57,11 @@ fn menus(
         });
     });
     ui.menu_button("Edit", |ui| {
-        let groups = [&[Command::Undo, Command::Redo, Command::History][..], &[Command::ViewBack, Command::ViewForth], &[Command::Preferences]];
+        let groups = [
+            &[Command::Undo, Command::Redo, Command::History][..],
+            &[Command::ViewBack, Command::ViewForth],
+            &[Command::Preferences],
+        ];
         entries(ui, (state, document), &groups, &mut chosen);
     });
     ui.menu_button("View", |ui| {
@@ -82,7 +86,12 @@ fn menus(
         theme_and_scale(ui);
     });
     ui.menu_button("Help", |ui| {
-        entries(ui, (state, document), &[&[Command::Help, Command::Palette, Command::Shortcuts], &[Command::CopySystem]], &mut chosen);
+        entries(
+            ui,
+            (state, document),
+            &[&[Command::Help, Command::Palette, Command::Shortcuts], &[Command::CopySystem]],
+            &mut chosen,
+        );
     });
     if let Some(command) = chosen {
         command.run(ui, state, document, actions);

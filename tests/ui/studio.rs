@@ -1,5 +1,7 @@
 //! What artists expect of a studio: undo, clipboard, snapshots, less to look at, random skies, presets.
 
+use nephoscope::app::action::Shape;
+
 use crate::*;
 
 #[test]
@@ -301,11 +303,12 @@ fn a_panorama_of_layers_is_asked_for_in_the_export_form() {
     editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::E);
     editor.harness.run();
     editor.click_label("EXR, layers of light");
-    editor.click_label("4K pano");
+    editor.click_label("Panorama");
+    editor.click_label("4K");
     editor.click_label("Export");
     let requests = editor.requests.borrow();
     let Some(Request::Export(export)) = requests.last() else { panic!("{requests:?}") };
-    assert!(export.is_panorama && export.size == [4096, 2048], "{export:?}");
+    assert!(export.shape == Shape::Panorama && export.size == [4096, 2048], "{export:?}");
     assert_eq!(export.still, nephoscope::app::action::Still::LayersExr);
 }
 

@@ -127,3 +127,20 @@ fn exposure_is_metered_and_false_colours_go_as_they_came() {
     assert_eq!(editor.scene().display.tone_map, curve, "as before");
     assert!(editor.harness.state().ui.dialog.is_none(), "the longer combination alone");
 }
+
+#[test]
+fn a_sequence_is_asked_for_with_the_films_own_length() {
+    let mut editor = Editor::new();
+    editor.harness.state_mut().perform(Action::DayLapse { film_secs: 10.0, speed: 60.0 });
+    editor.harness.state_mut().perform(Action::Play(false));
+    editor.harness.key_press_modifiers(COMMAND, egui::Key::E);
+    editor.harness.run();
+    editor.click_label("PNG, 16 bits");
+    editor.click_label("Sequence");
+    editor.click_label("Export");
+    let requests = editor.requests.borrow();
+    let Some(Request::Export(export)) = requests.last() else { panic!("{requests:?}") };
+    let frames = export.frames.expect("it is a sequence");
+    assert_eq!((frames.first, frames.last, frames.step), (0, 239, 1), "ten seconds of 24 frames");
+    assert!(export.path.display().to_string().ends_with(".####.png"), "{}", export.path.display());
+}

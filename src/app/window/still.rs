@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use super::super::action::Export;
+use super::super::action::{Export, Shape};
 use super::super::worker::StillJob;
 use super::App;
 use crate::scene::{Projection, Quality, UpdateFraction};
@@ -24,12 +24,12 @@ impl App {
         // A still has no pictures before it to take pixels from, and the size asked for is that of the file.
         let quality = Quality { update: UpdateFraction::Full, resolution_scale: 1.0, ..level };
         let mut preset = document.preset().clone();
-        if export.is_panorama {
+        if export.shape == Shape::Panorama {
             // The file says what it shows.
             preset.scene.camera.projection = Projection::Equirect;
         }
+        let text = if export.frames.is_some() { "Rendering a sequence" } else { "Rendering a still" }.to_owned();
         let job = StillJob { gpu: live.gpu.clone(), preset, quality, time_secs: document.time_secs(), export };
-        let text = "Rendering a still".to_owned();
         self.session.ui.busy = Some(Busy { text, progress: Some((0.0, None)), can_stop: true });
         self.given_up = Some(self.worker.still(job));
     }
@@ -57,7 +57,7 @@ impl App {
         let toasts = &mut self.session.ui.toasts;
         match result {
             Ok(Some(path)) => toasts.info(format!("Saved {}", path.display())),
-            Ok(None) => toasts.info("The still was given up; nothing was written"),
+            Ok(None) => toasts.info("Given up; only what was finished is written"),
             Err(error) => toasts.error(error),
         }
     }

@@ -1,0 +1,256 @@
+//! Renders a still and writes it: one picture, or a cube map.
+
+use std::path::{Path, PathBuf};
+
+use super::picture::{save_png_pixels, save_with};
+use super::{About, FileError, save_png};
+use crate::export::exr::{ExrLayers, ExrOptions};
+use crate::export::hdr::write_hdr;
+use crate::export::png::PngPixels;
+use crate::images::cross::cross;
+use crate::render::{LinearImage, RenderError, Renderer};
+use crate::scene::{CUBE_FACES, Camera, Frame, Output, Preset, Scene};
+
+/// What a picture's file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Content {
+    /// The picture as on the screen, 8 bits: PNG.
+    Display,
+    /// The same with 16 bits: PNG.
+    Display16,
+    /// Linear light as Radiance picture.
+    Radiance,
+    /// Linear light: EXR.
+    Linear(ExrOptions),
+    /// The same, with layers of light beside it: EXR.
+    Layers(ExrOptions),
+    /// Clouds with their opacity: EXR.
+    CloudsAlone(ExrOptions),
+}
+
+impl Content {
+    /// The ending of such a file's name.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Display | Self::Display16 => "png",
+            Self::Radiance => "hdr",
+            Self::Linear(_) | Self::Layers(_) | Self::CloudsAlone(_) => "exr",
+        }
+    }
+
+    /// What the renderer is asked for.
+    pub fn output(self) -> Output {
+        match self {
+            Self::Display | Self::Display16 => Output::Display,
+            Self::CloudsAlone(_) => Output::CloudsAlone,
+            Self::Radiance | Self::Linear(_) | Self::Layers(_) => Output::Linear,
+        }
+    }
+}
+
+/// How the faces of a cube map are laid out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CubeLayout {
+    /// Six files: `sky.px.exr` is east, `py` up, `pz` north, and so on.
+    Faces,
+    /// One file: a lying cross, north in its middle.
+    Cross,
+}
+
+/// Why a still could not be rendered or written.
+#[derive(Debug, thiserror::Error)]
+pub enum StillError {
+    /// Rendering failed.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// Writing failed.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The content does not go with a cube map.
+    #[error(
+        "layers cannot be written as a cube map; write linear light, or layers of a panorama (--projection equirect)"
+    )]
+    CubeOfLayers,
+}
+
+/// A still to be written. The sky is as its preset has it, at no other time.
+#[derive(Clone, Copy, Debug)]
+pub struct StillFile<'a> {
+    /// Where it goes.
+    pub path: &'a Path,
+    /// What it holds.
+    pub content: Content,
+    /// Width and height in pixels; of a face, if it is a cube map.
+    pub size: [u32; 2],
+    /// Whether, and how, it is a cube map.
+    pub cube: Option<CubeLayout>,
+    /// What it shows, and how it is computed.
+    pub about: About<'a>,
+}
+
+impl StillFile<'_> {
+    /// The files that it becomes.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        match self.cube {
+            Some(CubeLayout::Faces) => CUBE_FACES.iter().map(|face| face_path(self.path, face.name)).collect(),
+            _ => vec![self.path.to_owned()],
+        }
+    }
+
+    /// Renders and writes it. `proceed` hears the share that is done, and gives it up by `false`; then nothing is written, but
+    /// for the faces of a cube that were finished. Returns whether it was written.
+    ///
+    /// # Errors
+    /// [`StillError`].
+    pub fn render(&self, renderer: &mut Renderer, proceed: &mut dyn FnMut(f32) -> bool) -> Result<bool, StillError> {
+        match self.cube {
+            None => {
+                let Some(taken) = self.take(renderer, &self.about.preset.scene, proceed)? else { return Ok(false) };
+                let camera = Some(&self.about.preset.scene.camera);
+                self.write(self.path, taken, (&self.about, camera))?;
+            }
+            Some(_) if matches!(self.content, Content::Layers(_)) => return Err(StillError::CubeOfLayers),
+            Some(CubeLayout::Faces) => {
+                for (index, path) in self.paths().iter().enumerate() {
+                    let preset = Preset { scene: self.face(index), ..self.about.preset.clone() };
+                    let mut part = |share: f32| proceed((index as f32 + share) / CUBE_FACES.len() as f32);
+                    let Some(taken) = self.take(renderer, &preset.scene, &mut part)? else { return Ok(false) };
+                    let about = About { preset: &preset, ..self.about };
+                    self.write(path, taken, (&about, Some(&preset.scene.camera)))?;
+                }
+            }
+            Some(CubeLayout::Cross) => {
+                let mut faces = Vec::new();
+                for index in 0..CUBE_FACES.len() {
+                    let mut part = |share: f32| proceed((index as f32 + share) / CUBE_FACES.len() as f32);
+                    let Some(taken) = self.take(renderer, &self.face(index), &mut part)? else { return Ok(false) };
+                    faces.push(taken);
+                }
+                if let Some(whole) = crossed(faces, self.size[0]) {
+                    self.write(self.path, whole, (&self.about, None))?;
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    /// The sky seen from the eye towards a face. Streaks round the sun belong to a lens, and would end at its edges.
+    fn face(&self, index: usize) -> Scene {
+        let mut scene = self.about.preset.scene.clone();
+        scene.camera = scene.camera.at_face(&CUBE_FACES[index]);
+        scene.sunshafts.strength = 0.0;
+        scene
+    }
+
+    fn take(
+        &self,
+        renderer: &mut Renderer,
+        scene: &Scene,
+        proceed: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Option<Taken>, StillError> {
+        let mut quality = self.about.quality.clone();
+        if self.content == Content::Display16 {
+            // The mean of several samples is kept finer than the screen needs.
+            quality.pixel_samples = quality.pixel_samples.max(2);
+        }
+        let time_secs = self.about.time_secs;
+        let frame = Frame { scene, quality: &quality, size: self.size, time_secs, output: self.content.output() };
+        if let Content::Layers(_) = self.content {
+            let layers = renderer.layers(&frame, proceed)?.filter(|_| proceed(1.0));
+            return Ok(layers.map(|layers| {
+                let lights = layers.lights.into_iter().map(|(name, light)| (name.to_owned(), light)).collect();
+                let distance = layers.beauty.distance_m.clone();
+                let data =
+                    vec![("transmittance.A".to_owned(), layers.transmittance), ("distance.X".to_owned(), distance)];
+                Taken::Light(layers.beauty, ExrLayers { lights, data })
+            }));
+        }
+        // The last moment to give it up; then it is written.
+        let Some(still) = renderer.still_while(&frame, proceed)?.filter(|_| proceed(1.0)) else { return Ok(None) };
+        Ok(Some(match self.content {
+            Content::Display => {
+                let (size, rgba8) = renderer.rgba8_of(&still.into_display())?;
+                Taken::Bytes(size, rgba8)
+            }
+            Content::Display16 => {
+                let (size, rgb16) = still.display16(renderer)?;
+                Taken::Words(size, rgb16)
+            }
+            _ => Taken::Light(still.picture(renderer)?.image, ExrLayers::default()),
+        }))
+    }
+
+    fn write(
+        &self,
+        path: &Path,
+        taken: Taken,
+        (about, camera): (&About<'_>, Option<&Camera>),
+    ) -> Result<(), FileError> {
+        match (taken, self.content) {
+            (Taken::Bytes(size, rgba8), _) => save_png(path, size, &rgba8, about)?,
+            (Taken::Words(size, rgb16), _) => {
+                let flat: Vec<u16> = rgb16.into_iter().flatten().collect();
+                save_png_pixels(path, size, PngPixels::Rgb16(&flat), about)?;
+            }
+            (Taken::Light(image, _), Content::Radiance) => {
+                let rgb: Vec<[f32; 3]> = image.rgba.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
+                write_hdr(path, image.size, &rgb)?;
+            }
+            (
+                Taken::Light(image, layers),
+                Content::Linear(options) | Content::Layers(options) | Content::CloudsAlone(options),
+            ) => {
+                save_with(path, (image, layers), (about, camera), options)?;
+            }
+            // Light was asked for by those alone.
+            (Taken::Light(..), Content::Display | Content::Display16) => {}
+        }
+        Ok(())
+    }
+}
+
+/// A rendered picture.
+enum Taken {
+    Bytes([u32; 2], Vec<u8>),
+    Words([u32; 2], Vec<[u16; 3]>),
+    Light(LinearImage, ExrLayers),
+}
+
+/// The name of a face's file: `sky.exr` becomes `sky.px.exr`.
+fn face_path(path: &Path, face: &str) -> PathBuf {
+    let ending = path.extension().map_or_else(String::new, |ending| format!(".{}", ending.to_string_lossy()));
+    let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    path.with_file_name(format!("{stem}.{face}{ending}"))
+}
+
+/// Six pictures of one kind as a cross.
+fn crossed(faces: Vec<Taken>, side: u32) -> Option<Taken> {
+    let side = side as usize;
+    let size = |[width, height]: [usize; 2]| [width, height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+    let (mut bytes, mut words, mut light, mut scale) = (Vec::new(), Vec::new(), Vec::new(), 1.0);
+    for face in faces {
+        match face {
+            Taken::Bytes(_, rgba8) => bytes.push(rgba8.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect()),
+            Taken::Words(_, rgb16) => words.push(rgb16),
+            Taken::Light(image, _) => {
+                scale = image.candela_per_unit;
+                light.push(image.rgba);
+            }
+        }
+    }
+    if let Ok(faces) = <[Vec<[u8; 4]>; 6]>::try_from(bytes) {
+        let (whole, pixels) = cross(&faces, side, [0, 0, 0, u8::MAX]);
+        return Some(Taken::Bytes(size(whole), pixels.into_flattened()));
+    }
+    if let Ok(faces) = <[Vec<[u16; 3]>; 6]>::try_from(words) {
+        let (whole, pixels) = cross(&faces, side, [0; 3]);
+        return Some(Taken::Words(size(whole), pixels));
+    }
+    let faces = <[Vec<[f32; 4]>; 6]>::try_from(light).ok()?;
+    let (whole, rgba) = cross(&faces, side, [0.0, 0.0, 0.0, 1.0]);
+    let distance_m = vec![0.0; rgba.len()];
+    Some(Taken::Light(
+        LinearImage { size: size(whole), rgba, distance_m, candela_per_unit: scale },
+        ExrLayers::default(),
+    ))
+}
