@@ -10,7 +10,7 @@
 //! use nephoscope::scene::{Frame, Output, Quality, Scene};
 //!
 //! let (scene, quality) = (Scene::default(), Quality::default());
-//! let frame = Frame { scene: &scene, quality: &quality, size: [960, 540], time_secs: 0.0, output: Output::Display };
+//! let frame = Frame { scene: &scene, quality: &quality, size: [960, 540], time_secs: 0.0, output: Output::Display, window: None };
 //! for verdict in FramePlan::new(&frame).verdicts {
 //!     println!("{}: {} because {}", verdict.effect.info().name, if verdict.runs { "yes" } else { "no" }, verdict.because);
 //! }

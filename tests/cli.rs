@@ -507,3 +507,24 @@ fn a_film_follows_the_keys_of_its_sky() {
     };
     assert!(brightness("f.01.png") > 2 * brightness("f.00.png"), "the sun has risen");
 }
+
+#[test]
+fn a_region_keeps_its_place_in_the_whole() {
+    let folder = folder();
+    renders(&folder, &render("fair_weather", "part.exr", &["--region", "20x10+30+8"]));
+    let image = exr::meta::MetaData::read_from_file(folder.path().join("part.exr"), false).expect("it is sound");
+    let (whole, part) = (image.headers[0].shared_attributes.display_window, &image.headers[0]);
+    assert_eq!((whole.size.0, whole.size.1), (64, 36), "the display window is the whole");
+    assert_eq!((part.layer_size.0, part.layer_size.1), (20, 10));
+    let position = part.own_attributes.layer_position;
+    assert_eq!((position.0, position.1), (30, 8));
+    renders(&folder, &render("fair_weather", "part.png", &["--region", "20x10+30+8"]));
+    assert_eq!(png_size(&folder.path().join("part.png")), [20, 10]);
+    refuses(
+        &folder,
+        &render("fair_weather", "a.exr", &["--region", "60x10+30+8"]),
+        2,
+        &["leaves the picture", "64x36"],
+    );
+    refuses(&folder, &render("fair_weather", "a.exr", &["--region", "60x10"]), 2, &["WIDTHxHEIGHT+LEFT+TOP"]);
+}

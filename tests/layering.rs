@@ -15,7 +15,7 @@ const LAYERS: [(&str, &[&str]); 13] = [
     // Twins take the structs that shaders take.
     ("reference", &["render"]),
     ("export", &["images"]),
-    ("files", &["scene", "export", "images", "render", "gpu"]),
+    ("files", &["scene", "export", "images", "plan", "render", "gpu"]),
     ("lab", &["scene", "plan", "render", "gpu", "reference"]),
     // The plan, the timings, the light and the lab's results are read, never made; of the editor, what it shows and what it is
     // told.

@@ -310,6 +310,8 @@ pub struct Export {
     pub level: Option<QualityLevel>,
     /// Its frames, if it is a sequence; then the path has a run of `#`.
     pub frames: Option<Sequence>,
+    /// The part of it that is rendered: left, top, right and bottom, 0 to 1.
+    pub region: Option<[f32; 4]>,
     /// Where it goes.
     pub path: PathBuf,
 }

@@ -93,7 +93,14 @@ impl Document {
 
     /// The next picture of it, `size` pixels large.
     pub fn frame(&self, size: [u32; 2], output: Output) -> Frame<'_> {
-        Frame { scene: &self.preset.scene, quality: &self.quality, size, time_secs: self.time_secs, output }
+        Frame {
+            scene: &self.preset.scene,
+            quality: &self.quality,
+            size,
+            time_secs: self.time_secs,
+            output,
+            window: None,
+        }
     }
 
     /// Lets time run for some seconds of the clock.

@@ -105,7 +105,14 @@ mod tests {
 
     fn report(passes: &[(&'static str, Option<f64>)]) -> FrameReport {
         let (scene, quality) = (Scene::default(), Quality::default());
-        let frame = Frame { scene: &scene, quality: &quality, size: [1, 1], time_secs: 0.0, output: Output::Display };
+        let frame = Frame {
+            scene: &scene,
+            quality: &quality,
+            size: [1, 1],
+            time_secs: 0.0,
+            output: Output::Display,
+            window: None,
+        };
         FrameReport {
             plan: FramePlan::new(&frame),
             passes: passes.iter().map(|(pass, millis)| PassTime { pass, millis: *millis }).collect(),

@@ -9,7 +9,7 @@ use super::truth::{CompareJob, Outcome, Truths, Wishes};
 use crate::gpu::Gpu;
 use crate::plan::{Forced, FramePlan, Integrator};
 use crate::render::{LightHistogram, Progress, RenderError, Renderer};
-use crate::scene::{DomainKind, Frame, Output, Projection, Quality, Scene, UpdateFraction};
+use crate::scene::{DomainKind, Frame, Output, Projection, Quality, Scene, UpdateFraction, Window};
 use crate::ui::{LabState, Picked, Readout};
 
 /// Work sent to the device at a time. The panels' frame comes after at most one of these.
@@ -29,12 +29,14 @@ pub(super) struct Inputs {
     pub(super) size: [u32; 2],
     pub(super) time_secs: f64,
     pub(super) forced: Forced,
+    /// The part of the picture that is drawn.
+    pub(super) window: Option<Window>,
 }
 
 impl Inputs {
     fn frame(&self) -> Frame<'_> {
-        let Self { scene, quality, size, time_secs, .. } = self;
-        Frame { scene, quality, size: *size, time_secs: *time_secs, output: Output::Display }
+        let Self { scene, quality, size, time_secs, window, .. } = self;
+        Frame { scene, quality, size: *size, time_secs: *time_secs, output: Output::Display, window: *window }
     }
 }
 
@@ -78,6 +80,15 @@ pub(super) struct Viewport {
     broken: Option<String>,
     /// Frame time that the governor holds, in milliseconds, while it is on.
     budget_ms: Option<f64>,
+}
+
+/// A region, left, top, right and bottom as shares of a picture, in whole pixels: offset and size.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "pixels of a picture")]
+pub(super) fn pixels_of(region: [f32; 4], size: [u32; 2]) -> [[u32; 2]; 2] {
+    let edge = |share: f32, side: u32| (f64::from(share.clamp(0.0, 1.0)) * f64::from(side)).round() as u32;
+    let offset = [0, 1].map(|axis| edge(region[axis], size[axis]).min(size[axis].saturating_sub(1)));
+    let part = [0, 1].map(|axis| edge(region[axis + 2], size[axis]).saturating_sub(offset[axis]).max(1));
+    [offset, part]
 }
 
 /// The angle that a pixel spans in the middle of a picture so many pixels high, in degrees.
@@ -139,12 +150,16 @@ impl Viewport {
     pub(super) fn pick(&mut self, at: [f32; 2]) -> Result<Option<Picked>, RenderError> {
         let Some(inputs) = &self.begun else { return Ok(None) };
         let mut scene = inputs.scene.clone();
-        let towards = scene.camera.direction_through(at, inputs.size);
+        let (offset, share) = inputs.frame().window_shares();
+        #[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
+        let in_whole = [0, 1].map(|axis| (offset[axis] + share[axis] * f64::from(at[axis])) as f32);
+        let whole = inputs.frame().whole_size();
+        let towards = scene.camera.direction_through(in_whole, whole);
         let eye = [scene.camera.east_m, scene.camera.height_m, scene.camera.south_m];
         let up = if towards.y.abs() > 0.99 { glam::Vec3::X } else { glam::Vec3::Y };
         scene.camera.look(towards, up);
         scene.camera.projection = Projection::Perspective;
-        scene.camera.field_of_view_deg = pixel_deg(&inputs.scene, inputs.size[1]);
+        scene.camera.field_of_view_deg = pixel_deg(&inputs.scene, whole[1]);
         // A point has no neighbours that could throw streaks on it.
         scene.sunshafts.strength = 0.0;
         let own = inputs.quality.clone();
@@ -155,6 +170,7 @@ impl Viewport {
             size: [1, 1],
             time_secs: inputs.time_secs,
             output: Output::Linear,
+            window: None,
         };
         if !self.renderer.still_is_ready(&point, Integrator::Realtime, 1)? {
             return Ok(None);
@@ -182,14 +198,28 @@ impl Viewport {
         }))
     }
 
-    /// Begins a frame if one is due, and sends the next slice of work.
-    pub(super) fn step(&mut self, document: &Document, size: [u32; 2], forced: Forced) -> Result<Step, RenderError> {
+    /// Begins a frame if one is due, and sends the next slice of work. Of a picture of that size only the region is drawn, if
+    /// there is one.
+    pub(super) fn step(
+        &mut self,
+        document: &Document,
+        (size, region): ([u32; 2], Option<[f32; 4]>),
+        forced: Forced,
+    ) -> Result<Step, RenderError> {
+        let (window, size) = match region {
+            Some(region) => {
+                let [offset, part] = pixels_of(region, size);
+                (Some(Window { offset, whole: size }), part)
+            }
+            None => (None, size),
+        };
         let own = Inputs {
             scene: document.preset().scene.clone(),
             quality: document.quality().clone(),
             size,
             time_secs: document.time_secs(),
             forced,
+            window,
         };
         // What is shown at rest and what is compared has the document's own quality.
         self.has_moved_on |= self.truths.follow(&own, Instant::now());

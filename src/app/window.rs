@@ -300,7 +300,8 @@ impl App {
         let mut fastest = FASTEST_PANELS;
         if self.session.ui.viewport.rect.width() >= 1.0 && self.session.ui.viewport.rect.height() >= 1.0 {
             self.session.ui.lab.view.governor = live.viewport.govern(&self.session.ui.lab);
-            match live.viewport.step(&self.session.document, size, self.session.ui.forced) {
+            let region = self.session.ui.viewport.region;
+            match live.viewport.step(&self.session.document, (size, region), self.session.ui.forced) {
                 Ok(Step::Idle) => is_idle = true,
                 Ok(Step::Busy) => {
                     fastest = FASTEST_PANELS_BESIDE_WORK;
@@ -360,6 +361,7 @@ impl App {
         live.due = None;
         live.show_truth(&mut self.session);
         live.show_difference(&mut self.session);
+        live.keep_backdrop(&mut self.session);
         let Some(surface) = &mut live.surface else { return };
         surface.follow_window(&live.gpu);
         let viewport = &mut self.session.ui.viewport;
@@ -490,6 +492,7 @@ impl App {
                         shape: Shape::Camera,
                         level: None,
                         frames: None,
+                        region: None,
                         path: self.session.folders.pictures.clone(),
                     },
                 };

@@ -12,8 +12,9 @@ use winit::event_loop::EventLoopProxy;
 use super::action::{Browse, Export, Shape, Still};
 use super::lab::News;
 use super::truth::{CompareJob, Compared};
+use super::viewport::pixels_of;
 use crate::export::exr::ExrOptions;
-use crate::files::{About, Content, CubeLayout, StillFile, save_png};
+use crate::files::{About, Content, CubeLayout, LARGEST_WHOLE, StillFile, save_png};
 use crate::gpu::Gpu;
 use crate::images::pattern::FramePattern;
 use crate::render::Renderer;
@@ -235,6 +236,8 @@ fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result
                 Shape::CubeFaces => Some(CubeLayout::Faces),
                 Shape::CubeCross => Some(CubeLayout::Cross),
             },
+            largest_whole: LARGEST_WHOLE,
+            region: job.export.region.map(|region| pixels_of(region, job.export.size)),
             about: About { preset: &preset, quality: &job.quality, time_secs: *time_secs },
         };
         let mut part = |share: f32| proceed((index as f32 + share) / pictures.len() as f32);

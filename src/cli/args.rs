@@ -21,12 +21,24 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     match text.to_lowercase().as_str() {
         "hd" => Ok([1920, 1080]),
         "4k" => Ok([3840, 2160]),
-        other => {
-            let (width, height) = other.split_once(['x', '×']).ok_or_else(refused)?;
-            let side = |text: &str| text.parse().ok().filter(|side| (1..=MAX_SIDE).contains(side));
-            Ok([side(width).ok_or_else(refused)?, side(height).ok_or_else(refused)?])
-        }
+        other => size_of(other).ok_or_else(refused),
     }
+}
+
+fn size_of(text: &str) -> Option<[u32; 2]> {
+    let (width, height) = text.split_once(['x', '×'])?;
+    let side = |text: &str| text.trim().parse().ok().filter(|side| (1..=MAX_SIDE).contains(side));
+    Some([side(width)?, side(height)?])
+}
+
+/// `640x360+100+50`: offset from the top left, then size.
+pub(super) fn region(text: &str) -> Result<[[u32; 2]; 2], String> {
+    let refused = || format!("a region is WIDTHxHEIGHT+LEFT+TOP in pixels, such as 640x360+100+50, not {text}");
+    let mut parts = text.split('+');
+    let (size, left, top) = (parts.next(), parts.next(), parts.next());
+    let (Some(part), Some(left), Some(top), None) = (size, left, top, parts.next()) else { return Err(refused()) };
+    let offset = |text: &str| text.trim().parse().map_err(|_| refused());
+    Ok([[offset(left)?, offset(top)?], size_of(part).ok_or_else(refused)?])
 }
 
 /// A finite number.

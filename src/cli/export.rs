@@ -54,7 +54,7 @@ pub(super) fn run(args: &ExportArgs) -> Result<()> {
     let gpu = Gpu::headless(&args.device.choice())?;
     let mut renderer = Renderer::new(&gpu)?;
     let (scene, time_secs) = (&preset.scene, args.time);
-    let frame = Frame { scene, quality: &quality, size: [1280, 720], time_secs, output: Output::Display };
+    let frame = Frame { scene, quality: &quality, size: [1280, 720], time_secs, output: Output::Display, window: None };
     let table = renderer.table(&frame, kind).with_context(|| format!("{} could not be made", args.what))?;
     let Some(table) = table else {
         let said = format!("{} has no {}: nothing that it shows is made from one", args.scene.display(), args.what);

@@ -85,8 +85,14 @@ pub(super) fn run(args: &GridArgs) -> Result<()> {
     edit::apply(&args.edits.sets, &mut preset.scene, &mut quality)?;
     let gpu = Gpu::headless(&args.device.choice())?;
     let mut renderer = Renderer::new(&gpu)?;
-    let frame =
-        Frame { scene: &preset.scene, quality: &quality, size: PICTURE, time_secs: args.time, output: Output::Linear };
+    let frame = Frame {
+        scene: &preset.scene,
+        quality: &quality,
+        size: PICTURE,
+        time_secs: args.time,
+        output: Output::Linear,
+        window: None,
+    };
     let Some((grid, bounds)) = renderer.bake_extinction(&frame)? else {
         return Err(Usage(format!("{} has no cloud to bake: {}", preset.name, no_cloud(&frame))).into());
     };

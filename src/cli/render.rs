@@ -16,7 +16,7 @@ use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
 use crate::files::{
-    self, About, Content, CubeLayout, FileError, KeptPrograms, StillError, StillFile, save_exr, save_png,
+    self, About, Content, CubeLayout, FileError, KeptPrograms, LARGEST_WHOLE, StillError, StillFile, save_exr, save_png,
 };
 use crate::gpu::Gpu;
 use crate::images::pattern::{FramePattern, parse_frame_range};
@@ -37,6 +37,9 @@ pub(super) struct RenderArgs {
     /// [default: 1920x1080, 4096x2048 for a panorama, 1024x1024 for each face of a cube]
     #[arg(long, value_parser = args::size)]
     size: Option<[u32; 2]>,
+    /// Only a part of the picture: WIDTHxHEIGHT+LEFT+TOP in pixels. An EXR keeps its place in the whole.
+    #[arg(long, value_parser = args::region, value_name = "REGION")]
+    region: Option<[[u32; 2]; 2]>,
     /// How directions map onto the picture; as the sky says if not given.
     #[arg(long)]
     projection: Option<ProjectionArg>,
@@ -140,6 +143,7 @@ impl RenderArgs {
             scene,
             output,
             size: Some([1280, 720]),
+            region: None,
             projection: None,
             time: 0.0,
             camera: None,
@@ -249,6 +253,7 @@ struct Job {
     content: Content,
     size: [u32; 2],
     cube: Option<CubeLayout>,
+    region: Option<[[u32; 2]; 2]>,
     goal: Option<Goal>,
     forced: Forced,
     /// File and time of each picture.
@@ -297,6 +302,17 @@ impl Job {
         };
         let is_final = args.quality.as_deref().is_some_and(|quality| quality.eq_ignore_ascii_case("final"));
         let goal = args.integration.goal(is_final)?;
+        if let Some([offset, part]) = args.region {
+            let fits = |axis: usize| offset[axis].checked_add(part[axis]).is_some_and(|end| end <= size[axis]);
+            if cube.is_some() || goal.is_some() {
+                let said = "--region is for pictures of the realtime march that are no cube maps";
+                return Err(Usage(said.to_owned()).into());
+            }
+            if !fits(0) || !fits(1) {
+                let [width, height] = size;
+                return Err(Usage(format!("--region leaves the picture, which is {width}x{height}")).into());
+            }
+        }
         if goal.is_some() && (cube.is_some() || matches!(content, Content::Display16 | Content::Radiance)) {
             let said = "cube maps, Radiance files and 16-bit PNG are for the realtime march; choose --quality high";
             return Err(Usage(said.to_owned()).into());
@@ -306,7 +322,7 @@ impl Job {
         }
         let forced = args::forced(&args.force)?;
         let pictures = pictures(args, preset.animation.speed)?;
-        Ok(Self { preset, quality, content, size, cube, goal, forced, pictures })
+        Ok(Self { preset, quality, content, size, cube, region: args.region, goal, forced, pictures })
     }
 }
 
@@ -393,7 +409,8 @@ fn write_picture(
 ) -> Result<()> {
     let preset = Preset { scene: job.preset.at(time_secs), ..job.preset.clone() };
     let (quality, content) = (&job.quality, job.content);
-    let frame = Frame { scene: &preset.scene, quality, size: job.size, time_secs, output: content.output() };
+    let frame =
+        Frame { scene: &preset.scene, quality, size: job.size, time_secs, output: content.output(), window: None };
     let about = About { preset: &preset, quality, time_secs };
     let failed = || format!("{} could not be rendered", path.display());
     let not_finished = || Interrupted(format!("{} is not finished and was not written", path.display())).into();
@@ -405,12 +422,13 @@ fn write_picture(
             tell(share);
             !interrupt::is_asked()
         };
-        let file = StillFile { path, content, size: job.size, cube: job.cube, about };
+        let (size, cube, region) = (job.size, job.cube, job.region);
+        let file = StillFile { path, content, size, cube, region, largest_whole: LARGEST_WHOLE, about };
         return match file.render(renderer, &mut proceed) {
             Ok(true) => Ok(()),
             Ok(false) => Err(not_finished()),
             Err(StillError::Render(error)) => Err(anyhow::Error::new(error).context(failed())),
-            Err(error @ StillError::CubeOfLayers) => Err(Usage(error.to_string()).into()),
+            Err(error @ (StillError::CubeOfLayers | StillError::TooLarge)) => Err(Usage(error.to_string()).into()),
             Err(StillError::File(error)) => {
                 if matches!(error, FileError::Export(ExportError::NonFinite { .. })) {
                     // The pass that wrote it says more than the pixel.

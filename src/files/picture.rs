@@ -8,11 +8,11 @@ use super::FileError;
 use crate::export::exr::{EmbeddedFile, ExrDepth, ExrLayers, ExrMetadata, ExrOptions, PRESET, QUALITY};
 use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME, write_exr_with_layers};
 use crate::export::png::{PngPixels, write_png};
-use crate::images::FloatImage;
+use crate::images::{Crop, FloatImage};
 use crate::render::LinearImage;
 use crate::render::tables::Table;
 use crate::scene::edit::files_of;
-use crate::scene::{Camera, PRESET_VERSION, Preset, Projection, Quality, quality_to_ron};
+use crate::scene::{Camera, PRESET_VERSION, Preset, Projection, Quality, Window, quality_to_ron};
 
 /// What a picture shows and how it was computed.
 #[derive(Clone, Copy, Debug)]
@@ -67,33 +67,49 @@ pub fn save_exr(
     options: ExrOptions,
 ) -> Result<ExrDepth, FileError> {
     let camera = Some(&about.preset.scene.camera);
-    save_with(path, (image, ExrLayers::default()), (about, camera), options)
+    save_with(path, (image, ExrLayers::default()), (about, camera, None), options)
 }
 
-/// The same with layers, and with the camera's matrices if one camera made the picture.
+/// The same with layers, with the camera's matrices if one camera made the picture, and as a part of a whole.
 pub(super) fn save_with(
     path: &Path,
     (image, layers): (LinearImage, ExrLayers),
-    (about, camera): (&About<'_>, Option<&Camera>),
+    (about, camera, window): (&About<'_>, Option<&Camera>, Option<Window>),
     options: ExrOptions,
 ) -> Result<ExrDepth, FileError> {
+    let [width, height] = image.size;
+    let whole = window.map_or(image.size, |window| window.whole);
+    let metadata = metadata((about, camera), whole, image.candela_per_unit);
+    let crop = window.map(|window| Crop {
+        x: window.offset[0],
+        y: window.offset[1],
+        full_width: window.whole[0],
+        full_height: window.whole[1],
+    });
+    let image = FloatImage { width, height, rgba: image.rgba, depth: None, crop };
+    Ok(write_exr_with_layers(path, (&image, &layers), &metadata, options)?)
+}
+
+/// What is said of a picture of this size in its file.
+pub(super) fn metadata(
+    (about, camera): (&About<'_>, Option<&Camera>),
+    size: [u32; 2],
+    candela_per_unit: f32,
+) -> ExrMetadata {
     let (preset, files) = portable(about.preset);
-    let camera = camera.and_then(|camera| matrices(camera, image.size));
-    let metadata = ExrMetadata {
+    let camera = camera.and_then(|camera| matrices(camera, size));
+    ExrMetadata {
         comments: preset.name.clone(),
         preset_ron: preset.to_ron(),
         preset_version: PRESET_VERSION,
         quality_ron: quality_to_ron(about.quality),
-        candela_per_unit: image.candela_per_unit,
+        candela_per_unit,
         world_to_camera: camera.map(|camera| camera[0].to_cols_array_2d()),
         world_to_ndc: camera.map(|camera| camera[1].to_cols_array_2d()),
         extra: vec![("timeSecs".to_owned(), about.time_secs.to_string())],
         files,
         ..ExrMetadata::default()
-    };
-    let [width, height] = image.size;
-    let image = FloatImage { width, height, rgba: image.rgba, depth: None, crop: None };
-    Ok(write_exr_with_layers(path, (&image, &layers), &metadata, options)?)
+    }
 }
 
 /// Writes values of a map, a noise or a table: as EXR with all bits, or as PNG, red, green and blue of 0 to 1 in 16 bits.
@@ -112,7 +128,7 @@ pub fn save_table(path: &Path, table: Table, about: &About<'_>) -> Result<(), Fi
     let distance_m = vec![0.0; table.rgba.len()];
     let image = LinearImage { size: table.size, rgba: table.rgba, distance_m, candela_per_unit: 1.0 };
     let options = ExrOptions { depth: ExrDepth::Float, ..ExrOptions::default() };
-    save_with(path, (image, ExrLayers::default()), (about, None), options).map(|_| ())
+    save_with(path, (image, ExrLayers::default()), (about, None, None), options).map(|_| ())
 }
 
 /// The preset with map images named without their folders, and the images themselves.

@@ -2,14 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use super::picture::{save_png_pixels, save_with};
+use super::picture::{metadata, save_png_pixels, save_with};
 use super::{About, FileError, save_png};
-use crate::export::exr::{ExrLayers, ExrOptions};
+use crate::export::ExportError;
+use crate::export::exr::{Band, ExrLayers, ExrOptions, write_exr_in_bands};
 use crate::export::hdr::write_hdr;
 use crate::export::png::PngPixels;
 use crate::images::cross::cross;
+use crate::plan::{FramePlan, Lighting};
 use crate::render::{LinearImage, RenderError, Renderer};
-use crate::scene::{CUBE_FACES, Camera, Frame, Output, Preset, Scene};
+use crate::scene::{CUBE_FACES, Camera, Frame, Output, Preset, Scene, Window};
+
+/// What is rendered whole takes some 120 bytes for each pixel.
+pub const LARGEST_WHOLE: u64 = 4096 * 2176;
+/// Rows of the jitter's pattern: bands are multiples of it.
+const BAND_STEP: u32 = 64;
 
 /// What a picture's file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,11 +73,23 @@ pub enum StillError {
     /// Writing failed.
     #[error(transparent)]
     File(#[from] FileError),
+    /// It is too large to be rendered whole, and cannot be rendered in bands.
+    #[error(
+        "a picture of this size is rendered in bands, which neither layers nor streaks of light can be: \
+         make it smaller, leave the layers out, or set sunshafts.strength to 0"
+    )]
+    TooLarge,
     /// The content does not go with a cube map.
     #[error(
         "layers cannot be written as a cube map; write linear light, or layers of a panorama (--projection equirect)"
     )]
     CubeOfLayers,
+}
+
+impl From<ExportError> for StillError {
+    fn from(error: ExportError) -> Self {
+        Self::File(error.into())
+    }
 }
 
 /// A still to be written. The sky is as its preset has it, at no other time.
@@ -84,6 +103,10 @@ pub struct StillFile<'a> {
     pub size: [u32; 2],
     /// Whether, and how, it is a cube map.
     pub cube: Option<CubeLayout>,
+    /// The part of the picture that is rendered, in pixels: offset from the top left, then width and height. `None` for all.
+    pub region: Option<[[u32; 2]; 2]>,
+    /// Pictures of more pixels are rendered in bands; [`LARGEST_WHOLE`] suits most machines.
+    pub largest_whole: u64,
     /// What it shows, and how it is computed.
     pub about: About<'a>,
 }
@@ -105,33 +128,119 @@ impl StillFile<'_> {
     pub fn render(&self, renderer: &mut Renderer, proceed: &mut dyn FnMut(f32) -> bool) -> Result<bool, StillError> {
         match self.cube {
             None => {
-                let Some(taken) = self.take(renderer, &self.about.preset.scene, proceed)? else { return Ok(false) };
-                let camera = Some(&self.about.preset.scene.camera);
-                self.write(self.path, taken, (&self.about, camera))?;
+                let scene = &self.about.preset.scene;
+                let camera = Some(&scene.camera);
+                let part = self.region.map(|[offset, size]| (Window { offset, whole: self.size }, size));
+                if part.is_none() && self.is_large() && !self.is_in_bands_possible(scene) {
+                    return Err(StillError::TooLarge);
+                }
+                match self.content {
+                    Content::Linear(options) | Content::CloudsAlone(options) if part.is_none() && self.is_large() => {
+                        return self.write_in_bands(renderer, options, proceed);
+                    }
+                    _ if part.is_none() && self.is_large() => {
+                        let Some(taken) = self.take_in_bands(renderer, proceed)? else { return Ok(false) };
+                        self.write(self.path, taken, (&self.about, camera, None))?;
+                    }
+                    _ => {
+                        let Some(taken) = self.take(renderer, (scene, part), proceed)? else { return Ok(false) };
+                        self.write(self.path, taken, (&self.about, camera, part.map(|(window, _)| window)))?;
+                    }
+                }
             }
             Some(_) if matches!(self.content, Content::Layers(_)) => return Err(StillError::CubeOfLayers),
             Some(CubeLayout::Faces) => {
                 for (index, path) in self.paths().iter().enumerate() {
                     let preset = Preset { scene: self.face(index), ..self.about.preset.clone() };
                     let mut part = |share: f32| proceed((index as f32 + share) / CUBE_FACES.len() as f32);
-                    let Some(taken) = self.take(renderer, &preset.scene, &mut part)? else { return Ok(false) };
+                    let Some(taken) = self.take(renderer, (&preset.scene, None), &mut part)? else { return Ok(false) };
                     let about = About { preset: &preset, ..self.about };
-                    self.write(path, taken, (&about, Some(&preset.scene.camera)))?;
+                    self.write(path, taken, (&about, Some(&preset.scene.camera), None))?;
                 }
             }
             Some(CubeLayout::Cross) => {
                 let mut faces = Vec::new();
                 for index in 0..CUBE_FACES.len() {
                     let mut part = |share: f32| proceed((index as f32 + share) / CUBE_FACES.len() as f32);
-                    let Some(taken) = self.take(renderer, &self.face(index), &mut part)? else { return Ok(false) };
+                    let Some(taken) = self.take(renderer, (&self.face(index), None), &mut part)? else {
+                        return Ok(false);
+                    };
                     faces.push(taken);
                 }
                 if let Some(whole) = crossed(faces, self.size[0]) {
-                    self.write(self.path, whole, (&self.about, None))?;
+                    self.write(self.path, whole, (&self.about, None, None))?;
                 }
             }
         }
         Ok(true)
+    }
+
+    /// Whether it takes more memory than most machines have to hold what each pixel needs while it is rendered.
+    fn is_large(&self) -> bool {
+        u64::from(self.size[0]) * u64::from(self.size[1]) > self.largest_whole
+    }
+
+    /// Whether pixels do not depend on others that may lie in another band.
+    fn is_in_bands_possible(&self, scene: &Scene) -> bool {
+        let quality = &self.about.quality.of_still();
+        let (size, time_secs, output) = (self.size, self.about.time_secs, self.content.output());
+        let frame = Frame { scene, quality, size, time_secs, output, window: None };
+        let has_streaks = FramePlan::new(&frame).sunshafts.is_some();
+        !has_streaks && !matches!(self.content, Content::Layers(_))
+    }
+
+    /// The bands of a large picture, from the top. They begin where the jitter's pattern does, so that no seam is seen.
+    fn bands(&self) -> Vec<(Window, [u32; 2])> {
+        let [width, height] = self.size;
+        let rows = u32::try_from(self.largest_whole / 2 / u64::from(width))
+            .unwrap_or(u32::MAX)
+            .max(1)
+            .next_multiple_of(BAND_STEP);
+        let band = |first: u32| (Window { offset: [0, first], whole: self.size }, [width, rows.min(height - first)]);
+        (0..height).step_by(rows as usize).map(band).collect()
+    }
+
+    fn write_in_bands(
+        &self,
+        renderer: &mut Renderer,
+        options: ExrOptions,
+        proceed: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<bool, StillError> {
+        let scene = &self.about.preset.scene;
+        let camera = Some(&scene.camera);
+        let candela_per_unit = Lighting::new(scene).candela_per_unit;
+        let metadata = metadata((&self.about, camera), self.size, candela_per_unit);
+        let all = self.bands();
+        let count = all.len() as f32;
+        let mut left = all.into_iter().enumerate();
+        let mut next = || -> Result<Option<Band>, StillError> {
+            let Some((index, band)) = left.next() else { return Ok(None) };
+            let mut part = |share: f32| proceed((index as f32 + share) / count);
+            let taken = self.take(renderer, (scene, Some(band)), &mut part)?;
+            Ok(taken.map(|taken| if let Taken::Light(image, _) = taken { image.rgba } else { Vec::new() }))
+        };
+        write_exr_in_bands(self.path, self.size, (&metadata, options), &mut next)
+    }
+
+    /// The bands of a picture one below the other.
+    fn take_in_bands(
+        &self,
+        renderer: &mut Renderer,
+        proceed: &mut dyn FnMut(f32) -> bool,
+    ) -> Result<Option<Taken>, StillError> {
+        let bands = self.bands();
+        let mut whole: Option<Taken> = None;
+        for (index, band) in bands.iter().enumerate() {
+            let mut part = |share: f32| proceed((index as f32 + share) / bands.len() as f32);
+            let Some(taken) = self.take(renderer, (&self.about.preset.scene, Some(*band)), &mut part)? else {
+                return Ok(None);
+            };
+            whole = Some(match whole {
+                None => taken,
+                Some(above) => above.over(taken),
+            });
+        }
+        Ok(whole)
     }
 
     /// The sky seen from the eye towards a face. Streaks round the sun belong to a lens, and would end at its edges.
@@ -145,7 +254,7 @@ impl StillFile<'_> {
     fn take(
         &self,
         renderer: &mut Renderer,
-        scene: &Scene,
+        (scene, part): (&Scene, Option<(Window, [u32; 2])>),
         proceed: &mut dyn FnMut(f32) -> bool,
     ) -> Result<Option<Taken>, StillError> {
         let mut quality = self.about.quality.clone();
@@ -154,7 +263,8 @@ impl StillFile<'_> {
             quality.pixel_samples = quality.pixel_samples.max(2);
         }
         let time_secs = self.about.time_secs;
-        let frame = Frame { scene, quality: &quality, size: self.size, time_secs, output: self.content.output() };
+        let (window, size) = part.map_or((None, self.size), |(window, size)| (Some(window), size));
+        let frame = Frame { scene, quality: &quality, size, time_secs, output: self.content.output(), window };
         if let Content::Layers(_) = self.content {
             let layers = renderer.layers(&frame, proceed)?.filter(|_| proceed(1.0));
             return Ok(layers.map(|layers| {
@@ -184,7 +294,7 @@ impl StillFile<'_> {
         &self,
         path: &Path,
         taken: Taken,
-        (about, camera): (&About<'_>, Option<&Camera>),
+        (about, camera, window): (&About<'_>, Option<&Camera>, Option<Window>),
     ) -> Result<(), FileError> {
         match (taken, self.content) {
             (Taken::Bytes(size, rgba8), _) => save_png(path, size, &rgba8, about)?,
@@ -200,7 +310,7 @@ impl StillFile<'_> {
                 Taken::Light(image, layers),
                 Content::Linear(options) | Content::Layers(options) | Content::CloudsAlone(options),
             ) => {
-                save_with(path, (image, layers), (about, camera), options)?;
+                save_with(path, (image, layers), (about, camera, window), options)?;
             }
             // Light was asked for by those alone.
             (Taken::Light(..), Content::Display | Content::Display16) => {}
@@ -214,6 +324,30 @@ enum Taken {
     Bytes([u32; 2], Vec<u8>),
     Words([u32; 2], Vec<[u16; 3]>),
     Light(LinearImage, ExrLayers),
+}
+
+impl Taken {
+    /// The same with another picture of its kind and width below it.
+    fn over(self, below: Self) -> Self {
+        match (self, below) {
+            (Self::Bytes([width, height], mut bytes), Self::Bytes([_, more], rest)) => {
+                bytes.extend(rest);
+                Self::Bytes([width, height + more], bytes)
+            }
+            (Self::Words([width, height], mut words), Self::Words([_, more], rest)) => {
+                words.extend(rest);
+                Self::Words([width, height + more], words)
+            }
+            (Self::Light(mut image, layers), Self::Light(rest, _)) => {
+                image.size[1] += rest.size[1];
+                image.rgba.extend(rest.rgba);
+                // Nothing that is written in bands needs distances.
+                image.distance_m.clear();
+                Self::Light(image, layers)
+            }
+            (above, _) => above,
+        }
+    }
 }
 
 /// The name of a face's file: `sky.exr` becomes `sky.px.exr`.

@@ -202,7 +202,7 @@ fn shown(rgba: &[u8]) -> Vec<[f32; 3]> {
 
 /// A frame of a sky at a quality, all pixels, at its own size, for a file.
 fn still<'a>(scene: &'a Scene, quality: &'a Quality, size: [u32; 2]) -> Frame<'a> {
-    Frame { scene, quality, size, time_secs: 0.0, output: Output::Linear }
+    Frame { scene, quality, size, time_secs: 0.0, output: Output::Linear, window: None }
 }
 
 /// Quality as a still of it is computed.

@@ -24,7 +24,7 @@ pub struct Case {
 impl Case {
     fn frame(&self, time_secs: f64) -> Frame<'_> {
         let Self { scene, quality, size, .. } = self;
-        Frame { scene, quality, size: *size, time_secs, output: Output::Display }
+        Frame { scene, quality, size: *size, time_secs, output: Output::Display, window: None }
     }
 
     /// `1920×1080`.
@@ -333,8 +333,14 @@ mod tests {
     #[test]
     fn passes_are_told_apart_by_when_they_run() {
         let (scene, quality) = (Scene::default(), Quality::default());
-        let frame =
-            Frame { scene: &scene, quality: &quality, size: [64, 36], time_secs: 0.0, output: Output::default() };
+        let frame = Frame {
+            scene: &scene,
+            quality: &quality,
+            size: [64, 36],
+            time_secs: 0.0,
+            output: Output::default(),
+            window: None,
+        };
         let plan = FramePlan::new(&frame);
         let report = |passes: &[(&'static str, f64)], total_ms| FrameReport {
             plan: plan.clone(),

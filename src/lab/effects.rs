@@ -21,7 +21,10 @@ pub struct Facts {
 
 fn plan(case: &Case, forced: Forced) -> FramePlan {
     let Case { scene, quality, size, .. } = case;
-    FramePlan::forced(&Frame { scene, quality, size: *size, time_secs: 0.0, output: Output::Display }, forced)
+    FramePlan::forced(
+        &Frame { scene, quality, size: *size, time_secs: 0.0, output: Output::Display, window: None },
+        forced,
+    )
 }
 
 /// The effects of a sky that can be forced the other way.
@@ -46,7 +49,7 @@ pub fn cases(sky: &Case) -> Vec<Case> {
 pub fn facts(renderer: &mut Renderer, case: &Case) -> Result<Facts, RenderError> {
     renderer.force(case.forced);
     let Case { scene, quality, size, .. } = case;
-    let frame = Frame { scene, quality, size: *size, time_secs: 0.0, output: Output::Display };
+    let frame = Frame { scene, quality, size: *size, time_secs: 0.0, output: Output::Display, window: None };
     let counts = renderer.counted_reads(&frame)?;
     renderer.render(&frame)?;
     let bytes = renderer.memory_bytes();

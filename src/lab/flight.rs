@@ -112,8 +112,14 @@ pub fn fly(renderer: &mut Renderer, case: &Case, frames: u32) -> Result<Flight, 
         }
         let time_secs = f64::from(index) * FRAME_SECS;
         scene.camera = camera_at(&case.scene.camera, time_secs);
-        let frame =
-            Frame { scene: &scene, quality: &case.quality, size: case.size, time_secs, output: Output::Display };
+        let frame = Frame {
+            scene: &scene,
+            quality: &case.quality,
+            size: case.size,
+            time_secs,
+            output: Output::Display,
+            window: None,
+        };
         let begun = Instant::now();
         let report = renderer.render(&frame)?;
         if index >= WARM_UP {
@@ -126,7 +132,14 @@ pub fn fly(renderer: &mut Renderer, case: &Case, frames: u32) -> Result<Flight, 
     let (_, seen) = renderer.display_rgba8()?;
     let whole = Quality { update: UpdateFraction::Full, ..case.quality.clone() };
     let time_secs = f64::from(WARM_UP + frames - 1) * FRAME_SECS;
-    renderer.render(&Frame { scene: &scene, quality: &whole, size: case.size, time_secs, output: Output::Linear })?;
+    renderer.render(&Frame {
+        scene: &scene,
+        quality: &whole,
+        size: case.size,
+        time_secs,
+        output: Output::Linear,
+        window: None,
+    })?;
     let (size, expected) = renderer.display_rgba8()?;
     flight.trail = Trail::between(&seen, &expected);
     if let Some((camera, picture)) = before {

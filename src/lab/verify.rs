@@ -195,7 +195,14 @@ pub fn stays_finite(
     let mut broken = Vec::new();
     for index in 0..views {
         let scene = anywhere(scene, index);
-        renderer.render(&Frame { scene: &scene, quality: &quality, size, time_secs: 0.0, output: Output::Linear })?;
+        renderer.render(&Frame {
+            scene: &scene,
+            quality: &quality,
+            size,
+            time_secs: 0.0,
+            output: Output::Linear,
+            window: None,
+        })?;
         let clouds = renderer.clouds()?;
         let light = renderer.linear()?.rgba;
         let is_fine = |pixel: &[f32; 4]| pixel.iter().all(|value| value.is_finite() && *value >= 0.0);

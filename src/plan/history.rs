@@ -1,6 +1,6 @@
 //! What a picture may take over from the one before.
 
-use crate::scene::{Camera, Display, Frame, Quality, Scene, UpdateFraction, UpdateOrder};
+use crate::scene::{Camera, Display, Frame, Quality, Scene, UpdateFraction, UpdateOrder, Window};
 
 /// Cross order, figure 3.3(c) of Koblížek 2019, zero-based: the phase in which each pixel of a block is computed.
 const CROSS: [u32; 16] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5];
@@ -75,6 +75,7 @@ pub struct HistoryKey {
     scene: Scene,
     quality: Quality,
     size: [u32; 2],
+    window: Option<Window>,
 }
 
 impl HistoryKey {
@@ -90,6 +91,7 @@ impl HistoryKey {
             scene: Scene { camera: lens, display: Display::default(), ..frame.scene.clone() },
             quality: frame.quality.clone(),
             size: frame.render_size(),
+            window: frame.window,
         }
     }
 }
@@ -133,6 +135,7 @@ mod tests {
                 size: [64, 36],
                 time_secs: 0.0,
                 output: Output::Display,
+                window: None,
             })
         };
         let scene = Scene::default();

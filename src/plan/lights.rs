@@ -82,6 +82,7 @@ pub(super) fn sunshafts(frame: &Frame<'_>, has_occluder: bool, lighting: &Lighti
         &[
             (scene.plain_light.enabled, Need::Impossible, "there is no air"),
             (frame.output == Output::CloudsAlone, Need::Impossible, "only clouds are written"),
+            (frame.window.is_some(), Need::Impossible, "a part of a picture lacks what streaks come from"),
             (scene.sunshafts.strength <= 0.0, Need::Needless, "their strength is 0"),
             (lighting.streak_share() <= 0.0, Need::Needless, "the light is below the horizon"),
             (!has_occluder, Need::Unwanted, "nothing stands before the light"),

@@ -60,18 +60,19 @@ struct Elevations<'a> {
 impl<'a> Elevations<'a> {
     fn new(frame: &'a Frame<'a>) -> Self {
         let camera = &frame.scene.camera;
-        let half = camera.half_tangents(frame.render_size()).map(f64::from);
+        let half = camera.half_tangents(frame.whole_size()).map(f64::from);
         Self { frame, axes: camera.axes().map(|axis| axis.as_dvec3()), half }
     }
 
     /// Lowest and highest elevation in a row, whose samples lie anywhere in its pixels.
     fn of_row(&self, row: u32) -> [f64; 2] {
         let height = f64::from(self.frame.render_size()[1]);
-        let edges = [row + 1, row].map(|edge| self.of_line(f64::from(edge) / height));
+        let (offset, size) = self.frame.window_shares();
+        let edges = [row + 1, row].map(|edge| self.of_line(offset[1] + size[1] * f64::from(edge) / height));
         [edges[0][0].min(edges[1][0]), edges[0][1].max(edges[1][1])]
     }
 
-    /// The same along a line across the picture: 0 is its upper edge, 1 its lower one.
+    /// The same along a line across the whole picture: 0 is its upper edge, 1 its lower one.
     fn of_line(&self, v: f64) -> [f64; 2] {
         let elevation = match self.frame.scene.camera.projection {
             Projection::Perspective => return self.of_flat_line(v),
@@ -210,7 +211,14 @@ mod tests {
         let (mut scene, quality) = (Scene::default(), Quality::default());
         scene.camera.pitch_deg = 0.0;
         change(&mut scene);
-        open_rows(&Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output: Output::Display })
+        open_rows(&Frame {
+            scene: &scene,
+            quality: &quality,
+            size: [160, 90],
+            time_secs: 0.0,
+            output: Output::Display,
+            window: None,
+        })
     }
 
     #[test]

@@ -10,7 +10,7 @@ fn plan_of(change: impl FnOnce(&mut Scene, &mut Quality)) -> FramePlan {
 fn plan_for(output: Output, change: impl FnOnce(&mut Scene, &mut Quality)) -> FramePlan {
     let (mut scene, mut quality) = (Scene::default(), Quality::default());
     change(&mut scene, &mut quality);
-    FramePlan::new(&Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output })
+    FramePlan::new(&Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output, window: None })
 }
 
 fn because(plan: &FramePlan, effect: Effect) -> &str {
@@ -121,8 +121,14 @@ fn what_is_forced_runs_or_not_unless_it_cannot() {
     let forced = |effect, wanted, change: fn(&mut Scene)| {
         let (mut scene, quality) = (Scene::default(), Quality::default());
         change(&mut scene);
-        let frame =
-            Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output: Output::Display };
+        let frame = Frame {
+            scene: &scene,
+            quality: &quality,
+            size: [160, 90],
+            time_secs: 0.0,
+            output: Output::Display,
+            window: None,
+        };
         FramePlan::forced(&frame, Forced::default().with(effect, Some(wanted)))
     };
     assert!(forced(Effect::Sunshafts, true, |_| ()).sunshafts.is_some(), "strength is 0");
@@ -154,7 +160,14 @@ fn clouds_that_the_view_misses_are_not_marched() {
 #[test]
 fn stills_march_all_pixels_several_times_and_paths_have_samples_of_their_own() {
     let (scene, quality) = (Scene::default(), Quality::default());
-    let frame = Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output: Output::Display };
+    let frame = Frame {
+        scene: &scene,
+        quality: &quality,
+        size: [160, 90],
+        time_secs: 0.0,
+        output: Output::Display,
+        window: None,
+    };
     assert_eq!(FramePlan::new(&frame).pixel_samples, 1, "a moving picture has one");
     let still = FramePlan::for_still(&frame, (Integrator::Realtime, 4), Forced::default());
     assert_eq!((still.temporal, still.pixel_samples, still.tracks), (None, 4, false));
@@ -168,7 +181,14 @@ fn truths_look_farther_than_the_march_is_allowed_to() {
     (scene.layers[0].base_m, scene.layers[0].top_m) = (8000.0, 9000.0);
     (scene.camera.pitch_deg, scene.camera.field_of_view_deg, scene.camera.height_m) = (1.0, 2.0, 20.0);
     let quality = Quality { max_distance_m: 20_000.0, ..Quality::default() };
-    let frame = Frame { scene: &scene, quality: &quality, size: [160, 90], time_secs: 0.0, output: Output::Display };
+    let frame = Frame {
+        scene: &scene,
+        quality: &quality,
+        size: [160, 90],
+        time_secs: 0.0,
+        output: Output::Display,
+        window: None,
+    };
     assert!(!FramePlan::new(&frame).has_clouds(), "the march sees none so far away");
     for integrator in [Integrator::Converged, Integrator::PathTraced] {
         let plan = FramePlan::for_still(&frame, (integrator, 1), Forced::default());

@@ -10,7 +10,7 @@ pub(super) const MARGIN_DEG: f32 = 0.1;
 
 /// Half the angle across the picture's diagonal.
 pub(super) fn half_diagonal_deg(frame: &Frame<'_>) -> f32 {
-    let [across, up] = frame.scene.camera.half_tangents(frame.render_size());
+    let [across, up] = frame.scene.camera.half_tangents(frame.whole_size());
     across.hypot(up).atan().to_degrees()
 }
 
@@ -23,8 +23,8 @@ pub(super) fn angle_off_view_deg(scene: &Scene, towards: Vec3) -> f32 {
 /// Whether no part of a disc can be in the picture.
 pub(super) fn is_out_of_view(frame: &Frame<'_>, towards: Vec3, radius_deg: f32) -> bool {
     // A pixel has a soft edge of its own size.
-    let [across, up] = frame.scene.camera.half_tangents(frame.render_size());
-    let [width, height] = frame.render_size();
+    let [across, up] = frame.scene.camera.half_tangents(frame.whole_size());
+    let [width, height] = frame.whole_size();
     let pixel_deg = (2.0 * (across / width as f32).max(up / height as f32)).atan().to_degrees();
     frame.scene.camera.projection == Projection::Perspective
         && angle_off_view_deg(frame.scene, towards) > half_diagonal_deg(frame) + radius_deg + pixel_deg + MARGIN_DEG

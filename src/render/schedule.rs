@@ -233,15 +233,16 @@ pub(super) fn view_uniforms(
     let (block, offset, is_checkerboard) = plan.temporal.map_or(([1, 1], [0, 0], false), |pattern| {
         (pattern.block(), pattern.offset(next_phase(history)), pattern.is_checkerboard())
     });
-    let height = size[1] as f32;
+    let whole = frame.whole_size();
+    let height = whole[1] as f32;
     let pixel_angle = match scene.camera.projection {
-        Projection::Perspective => 2.0 * scene.camera.half_tangents(size)[1] / height,
+        Projection::Perspective => 2.0 * scene.camera.half_tangents(whole)[1] / height,
         Projection::Equirect => std::f32::consts::PI / height,
         Projection::Dome => std::f32::consts::FRAC_PI_2 / height,
     };
     ViewUniforms {
-        camera: uniforms::camera_uniforms(&scene.camera, size, eye, eye),
-        previous: uniforms::camera_uniforms(&scene.camera, size, &before, eye),
+        camera: uniforms::camera_uniforms(frame, eye, eye),
+        previous: uniforms::camera_uniforms(frame, &before, eye),
         cloud_motion_m: Vec3::new(motion.x as f32, 0.0, motion.y as f32),
         is_still: u32::from(history.is_some() && before == *eye && elapsed == 0.0),
         size: UVec2::from_array(size),

@@ -27,7 +27,7 @@ mod weather;
 
 pub use animation::{Animation, DURATION_RANGE_SECS, Ease, Keyframe, SPEED_RANGE, Track};
 pub use cube::{CUBE_FACES, CubeFace};
-pub use frame::{Frame, Output};
+pub use frame::{Frame, Output, Window};
 pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
 pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};
 pub use place::{Camera, Display, Domain, DomainKind, FALSE_COLOURS, FieldOfViewAxis, Ground, Projection, ToneMap};

@@ -63,6 +63,8 @@ pub enum Command {
     KeepCamera,
     /// Directions over the picture on or off.
     Guides,
+    /// Draw only a part of the picture, or all of it.
+    Region,
     /// Half a stop brighter.
     Brighter,
     /// Half a stop darker.
@@ -98,7 +100,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 42] = [
+const TABLE: [(Command, Modifiers, Key, &str); 43] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -127,6 +129,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 42] = [
     (Command::ResetCamera, Modifiers::NONE, Key::Home, "Camera back to the preset’s"),
     (Command::KeepCamera, Modifiers::COMMAND, Key::K, "Keep this camera"),
     (Command::Guides, Modifiers::NONE, Key::G, "Guides: horizon, compass, thirds"),
+    (Command::Region, Modifiers::COMMAND, Key::B, "Render a region"),
     (Command::Brighter, Modifiers::NONE, Key::OpenBracket, "Half a stop brighter"),
     (Command::Darker, Modifiers::NONE, Key::CloseBracket, "Half a stop darker"),
     (Command::Presets, Modifiers::NONE, Key::F2, "Preset list"),
@@ -200,7 +203,9 @@ impl Command {
             Self::Save if document.path().is_some() => ask(Request::Save),
             Self::Save | Self::SaveAs => state.dialog = Some(Dialog::save_as(document, &state.library)),
             Self::Screenshot => ask(Request::Screenshot),
-            Self::Export => state.dialog = Some(Dialog::Export(ExportForm::for_document(document))),
+            Self::Export => {
+                state.dialog = Some(Dialog::Export(ExportForm::for_document(document, state.viewport.region)));
+            }
             Self::Quit => ask(Request::Quit),
             Self::Undo => actions.push(Action::Undo),
             Self::Redo => actions.push(Action::Redo),
@@ -236,6 +241,13 @@ impl Command {
                 }
                 None => state.toasts.error("Nine cameras are kept already; forget one first (View, Cameras)"),
             },
+            Self::Region => {
+                let viewport = &mut state.viewport;
+                if viewport.region.take().is_none() && !std::mem::take(&mut viewport.is_choosing) {
+                    viewport.is_choosing = true;
+                    state.toasts.info("Drag a rectangle over the picture; Ctrl+B again draws all of it");
+                }
+            }
             Self::Guides => state.viewport.has_guides = !state.viewport.has_guides,
             Self::Timeline => state.timeline.is_open = !state.timeline.is_open,
             Self::Overlay => state.show_overlay = !state.show_overlay,
@@ -297,6 +309,7 @@ impl Command {
             Self::Timeline => state.timeline.is_open,
             Self::Histogram => state.histogram.is_open,
             Self::Guides => state.viewport.has_guides,
+            Self::Region => state.viewport.region.is_some() || state.viewport.is_choosing,
             Self::Vary => state.vary.is_open,
             Self::Inspect => state.inspector.is_on,
             _ => false,

@@ -28,13 +28,15 @@ pub struct ExportForm {
     pub level: Option<QualityLevel>,
     /// Where it goes.
     pub path: String,
+    /// The region of the viewport, and whether only that is rendered.
+    pub region: Option<([f32; 4], bool)>,
     /// The frame at which the document's animation ends.
     pub last_frame: u32,
 }
 
 impl ExportForm {
-    /// A full-HD EXR named after the document, at the level that its preset names.
-    pub fn for_document(document: &Document) -> Self {
+    /// A full-HD EXR named after the document, at the level that its preset names, of the viewport's region if it has one.
+    pub fn for_document(document: &Document, region: Option<[f32; 4]>) -> Self {
         let path = PathBuf::from(format!("{}.exr", file_name(document.name())));
         let path = std::path::absolute(&path).unwrap_or(path).display().to_string();
         let level = Some(document.preset().quality.unwrap_or(QualityLevel::High));
@@ -50,8 +52,13 @@ impl ExportForm {
             frames: None,
             level,
             path,
+            region: region.map(|region| (region, true)),
             last_frame,
         }
+    }
+
+    fn is_cube(&self) -> bool {
+        matches!(self.shape, Shape::CubeFaces | Shape::CubeCross)
     }
 
     /// A size that suits what is shown.
@@ -90,7 +97,7 @@ impl ExportForm {
 
 fn sizes(ui: &mut Ui, form: &mut ExportForm) {
     ui.label("Size");
-    let is_cube = matches!(form.shape, Shape::CubeFaces | Shape::CubeCross);
+    let is_cube = form.is_cube();
     let response = ui.add(egui::DragValue::new(&mut form.width).range(1..=16_384).suffix(" px"));
     row::name(ui, &response, "Width", "Width");
     if !is_cube {
@@ -109,6 +116,8 @@ fn sizes(ui: &mut Ui, form: &mut ExportForm) {
     }
     if is_cube {
         form.height = form.width;
+    } else if let Some((_, wanted)) = &mut form.region {
+        ui.checkbox(wanted, "Only the region").on_hover_text("An EXR keeps its place in the whole");
     }
 }
 
@@ -188,6 +197,7 @@ pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>
                     shape: form.shape,
                     level: form.level,
                     frames: form.frames,
+                    region: form.region.filter(|(_, wanted)| *wanted && !form.is_cube()).map(|(region, _)| region),
                     path: PathBuf::from(form.path.trim()),
                 })));
             }

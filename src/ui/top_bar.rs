@@ -76,7 +76,7 @@ fn menus(
                 Command::Inspect,
                 Command::Histogram,
             ][..],
-            &[Command::HideAll, Command::FullScreen, Command::Guides],
+            &[Command::HideAll, Command::FullScreen, Command::Guides, Command::Region],
             &[Command::ResetCamera, Command::Brighter, Command::Darker, Command::FalseColour],
             &[Command::Refine, Command::Keep, Command::Compare],
         ];

@@ -1,6 +1,6 @@
 //! The picture in the middle, and what hands do to it.
 
-use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Sense, Ui, Vec2};
+use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Sense, Stroke, Ui, Vec2};
 
 use super::inspector::InspectorState;
 use super::snapshots::{self, Beside, SnapshotState};
@@ -11,6 +11,11 @@ use crate::scene::param::Choice;
 
 /// What the picture lies on: a middle grey that changes no colour's looks, in both themes.
 const SURROUND: Color32 = Color32::from_gray(72);
+
+/// All of a texture.
+const FULL: Rect = Rect { min: Pos2::ZERO, max: Pos2::new(1.0, 1.0) };
+/// Side of the smallest region, in points.
+const SMALLEST_REGION: f32 = 16.0;
 
 /// The last finished picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,6 +58,29 @@ pub struct ViewportState {
     pub gestures: Vec<Gesture>,
     /// Whether directions are drawn over the picture.
     pub has_guides: bool,
+    /// The part of the picture that is drawn: left, top, right and bottom, 0 to 1.
+    pub region: Option<[f32; 4]>,
+    /// Whether the next drag chooses the region; and where it began.
+    pub is_choosing: bool,
+    begun: Option<Pos2>,
+    /// What lies behind the region.
+    pub backdrop: Option<Backdrop>,
+}
+
+/// A picture that this program keeps itself.
+#[derive(Clone)]
+pub struct Backdrop(egui::TextureHandle, [u32; 2]);
+
+impl std::fmt::Debug for Backdrop {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.debug_tuple("Backdrop").field(&self.1).finish()
+    }
+}
+
+impl From<(egui::TextureHandle, [u32; 2])> for Backdrop {
+    fn from((texture, size): (egui::TextureHandle, [u32; 2])) -> Self {
+        Self(texture, size)
+    }
 }
 
 impl Default for ViewportState {
@@ -64,6 +92,10 @@ impl Default for ViewportState {
             rect: Rect::from_min_size(Pos2::ZERO, Vec2::ZERO),
             gestures: Vec::new(),
             has_guides: false,
+            region: None,
+            is_choosing: false,
+            begun: None,
+            backdrop: None,
         }
     }
 }
@@ -93,6 +125,18 @@ pub(super) fn show(
     }
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 0.0, SURROUND);
+    let whole = rect;
+    let rect = match state.region {
+        Some(region) => {
+            if let Some(Backdrop(texture, size)) = &state.backdrop {
+                let dimmed = Color32::from_gray(110);
+                painter.image(texture.id(), fitted(whole, *size), FULL, dimmed);
+            }
+            part_of(whole, region)
+        }
+        None => whole,
+    };
+    let painter = ui.painter_at(whole);
     // At rest the refined picture stands for the realtime one; while pictures are compared, that of all pixels does.
     let plain = if truth.compares() { truth.view.still } else { truth.view.refined };
     match plain.or(state.picture) {
@@ -112,7 +156,8 @@ pub(super) fn show(
                 inspector.picked = None;
             }
             if state.has_guides {
-                super::guides::paint(&painter, place, &document.preset().scene);
+                let whole = if state.region.is_some() { whole } else { place };
+                super::guides::paint(&painter, whole, &document.preset().scene);
             }
             super::inspector::mark(&painter, place, inspector);
         }
@@ -121,6 +166,10 @@ pub(super) fn show(
             painter.text(rect.center(), Align2::CENTER_CENTER, &state.status, font, Color32::from_gray(215));
         }
     }
+    if state.region.is_some() {
+        painter.rect_stroke(rect, 0.0, Stroke::new(1.0, Color32::from_rgb(255, 210, 120)), egui::StrokeKind::Outside);
+    }
+    let rect = whole;
     if let Some(hud) = &state.hud {
         let font = FontId::proportional(15.0);
         let galley = painter.layout_no_wrap(hud.clone(), font, Color32::WHITE);
@@ -129,12 +178,47 @@ pub(super) fn show(
         painter.rect_filled(place.expand2(Vec2::new(8.0, 4.0)), 4.0, Color32::from_black_alpha(150));
         painter.galley(place.min, galley, Color32::WHITE);
     }
-    gestures(ui, &response, habit, &mut state.gestures);
+    if state.is_choosing {
+        choose_region(ui, (whole, &response), state);
+    } else {
+        gestures(ui, &response, habit, &mut state.gestures);
+    }
+}
+
+/// The part of an area.
+fn part_of(area: Rect, [left, top, right, bottom]: [f32; 4]) -> Rect {
+    let at = |u: f32, v: f32| Pos2::new(area.left() + u * area.width(), area.top() + v * area.height());
+    Rect::from_min_max(at(left, top), at(right, bottom))
+}
+
+/// Lets a drag choose the region; Escape ends it.
+fn choose_region(ui: &Ui, (area, response): (Rect, &egui::Response), state: &mut ViewportState) {
+    if response.hovered() {
+        ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
+    }
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        (state.is_choosing, state.begun) = (false, None);
+        return;
+    }
+    let Some(pointer) = response.interact_pointer_pos() else { return };
+    if response.drag_started_by(PointerButton::Primary) {
+        state.begun = ui.input(|input| input.pointer.press_origin()).or(Some(pointer));
+    }
+    let Some(begun) = state.begun else { return };
+    let chosen = Rect::from_two_pos(begun, pointer).intersect(area);
+    ui.painter_at(area).rect_stroke(chosen, 0.0, Stroke::new(1.5, Color32::WHITE), egui::StrokeKind::Middle);
+    if response.drag_stopped() {
+        (state.is_choosing, state.begun) = (false, None);
+        // A slip of the hand is no region.
+        if chosen.width() >= SMALLEST_REGION && chosen.height() >= SMALLEST_REGION {
+            let (low, high) = ((chosen.min - area.min) / area.size(), (chosen.max - area.min) / area.size());
+            state.region = Some([low.x, low.y, high.x, high.y]);
+        }
+    }
 }
 
 fn image(painter: &egui::Painter, place: Rect, texture: egui::TextureId) {
-    let uv = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
-    painter.image(texture, place, uv, Color32::WHITE);
+    painter.image(texture, place, FULL, Color32::WHITE);
 }
 
 /// Says in an upper corner whose picture it is.
@@ -241,8 +325,8 @@ fn divider(ui: &Ui, place: Rect, (name, key): (&str, &str), share: &mut f32) {
     let x = place.left() + place.width() * *share;
     let width = if response.hovered() || response.dragged() || response.has_focus() { 3.0 } else { 1.5 };
     let painter = ui.painter_at(place);
-    painter.vline(x, place.y_range(), egui::Stroke::new(width + 2.0, Color32::from_black_alpha(110)));
-    painter.vline(x, place.y_range(), egui::Stroke::new(width, Color32::WHITE));
+    painter.vline(x, place.y_range(), Stroke::new(width + 2.0, Color32::from_black_alpha(110)));
+    painter.vline(x, place.y_range(), Stroke::new(width, Color32::WHITE));
 }
 
 /// What dragging with a button means.

@@ -32,7 +32,7 @@ pub(crate) fn quick() -> Quality {
 
 /// A frame at time 0.
 pub(crate) fn frame<'a>(scene: &'a Scene, quality: &'a Quality, size: [u32; 2], output: Output) -> Frame<'a> {
-    Frame { scene, quality, size, time_secs: 0.0, output }
+    Frame { scene, quality, size, time_secs: 0.0, output, window: None }
 }
 
 /// Renders a frame; a failure names itself.

@@ -72,7 +72,7 @@ fn reachable() -> BTreeMap<String, ProgramKey> {
     keys.extend(watch::programs());
     for (scene, quality) in &scenes {
         for output in [Output::Display, Output::Linear, Output::CloudsAlone] {
-            let plan = FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output });
+            let plan = FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output, window: None });
             keys.extend(programs(&plan));
             keys.extend(meter::programs(&plan));
             keys.extend(truth::programs(&plan));
@@ -108,7 +108,8 @@ fn every_pass_in_every_form_that_a_sky_can_ask_for_is_valid() {
 fn one_edit_reaches_few_programs() {
     let quality = Quality::default();
     let programs_of = |scene: &Scene| -> Vec<String> {
-        let frame = Frame { scene, quality: &quality, size: [64, 36], time_secs: 0.0, output: Output::Display };
+        let frame =
+            Frame { scene, quality: &quality, size: [64, 36], time_secs: 0.0, output: Output::Display, window: None };
         programs(&FramePlan::new(&frame)).iter().map(ToString::to_string).collect()
     };
     let (mut as_they_are, mut edited) = (BTreeSet::new(), BTreeSet::new());

@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
+use nephoscope::export::exr::{ExrDepth, ExrOptions};
+use nephoscope::files::{About, Content, StillFile};
 use nephoscope::gpu::readback;
 use nephoscope::render::Renderer;
 use nephoscope::render::truth::Goal;
-use nephoscope::scene::{Output, Quality, Scene};
+use nephoscope::scene::{Frame, Output, Preset, Projection, Quality, Scene, Window};
 
 use crate::common::gpu;
 use crate::common::sky::{frame, quick, render, renderer};
@@ -182,4 +184,75 @@ fn a_still_that_is_given_up_is_no_picture_and_the_next_one_is() {
     let one = Quality { pixel_samples: 1, ..quality.clone() };
     let small = frame(&scene, &one, [32, 18], Output::Linear);
     assert!(renderer.still_while(&small, &mut |_| true).expect("nothing fails").is_some());
+}
+
+#[test]
+fn parts_of_a_picture_are_cut_from_the_whole() {
+    let quality = Quality { pixel_samples: 2, ..quick() };
+    for projection in [Projection::Perspective, Projection::Equirect] {
+        let mut scene = Scene::default();
+        scene.camera.projection = projection;
+        scene.camera.roll_deg = 4.0;
+        scene.sunshafts.strength = 0.0;
+        let whole = [96, 160];
+        let mut renderer = renderer();
+        let mut take = |window: Option<Window>, size: [u32; 2]| {
+            let frame = Frame { window, ..frame(&scene, &quality, size, Output::Linear) };
+            let still = renderer.still(&frame).expect("it can be rendered");
+            still.picture(&renderer).expect("it can be read").image.rgba
+        };
+        let expected = take(None, whole);
+        // The jitter's pattern has 64 pixels: parts that begin with it have the same.
+        for (offset, size) in [([0, 0], [96, 64]), ([0, 64], [96, 96]), ([64, 64], [32, 40])] {
+            let part = take(Some(Window { offset, whole }), size);
+            let gaps = part.iter().enumerate().map(|(index, seen)| {
+                let index = u32::try_from(index).expect("a small picture");
+                let (x, y) = (offset[0] + index % size[0], offset[1] + index / size[0]);
+                let own = expected[(y * whole[0] + x) as usize];
+                (seen[1] - own[1]).abs() / own[1].max(1e-4)
+            });
+            // Rounding of a direction may let a ray that grazes a cloud take another step.
+            let gaps: Vec<f32> = gaps.collect();
+            let (mean, far) =
+                (gaps.iter().sum::<f32>() / gaps.len() as f32, gaps.iter().filter(|gap| **gap > 2e-3).count());
+            assert!(mean < 2e-4, "{projection:?}: {mean} off in the mean");
+            assert!(far * 100 <= gaps.len(), "{projection:?}: {far} of {} pixels differ", gaps.len());
+        }
+    }
+}
+
+#[test]
+fn large_pictures_are_written_in_bands() {
+    let quality = Quality { pixel_samples: 1, ..quick() };
+    let mut preset = Preset::new("Large", Scene::default());
+    preset.scene.camera.projection = Projection::Equirect;
+    preset.scene.sunshafts.strength = 0.0;
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut renderer = renderer();
+    let mut write = |name: &str, content: Content, largest_whole: u64| {
+        let path = folder.path().join(name);
+        let about = About { preset: &preset, quality: &quality, time_secs: 0.0 };
+        let file = StillFile { path: &path, content, size: [48, 160], cube: None, region: None, largest_whole, about };
+        let mut shares = Vec::new();
+        let written = file.render(&mut renderer, &mut |share| {
+            shares.push(share);
+            true
+        });
+        assert!(written.expect("it can be rendered"), "nobody gave it up");
+        assert!(shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");
+        path
+    };
+    let options = ExrOptions { depth: ExrDepth::Float, ..ExrOptions::default() };
+    let light = |path: &std::path::Path| nephoscope::images::map::read_exr(path).expect("it is sound").rgba;
+    let whole = light(&write("whole.exr", Content::Linear(options), u64::MAX));
+    let bands = light(&write("bands.exr", Content::Linear(options), 48 * 100));
+    assert_eq!(whole.len(), bands.len());
+    let gap: f32 = whole.iter().zip(&bands).map(|(whole, band)| (whole[1] - band[1]).abs() / whole[1].max(1e-4)).sum();
+    assert!(gap / (whole.len() as f32) < 2e-4, "{gap}");
+    let shown = |path: &std::path::Path| image::open(path).expect("it is sound").to_rgb8();
+    let whole = shown(&write("whole.png", Content::Display, u64::MAX));
+    let bands = shown(&write("bands.png", Content::Display, 48 * 100));
+    assert_eq!(whole.dimensions(), bands.dimensions());
+    let far = whole.pixels().zip(bands.pixels()).filter(|(whole, band)| whole.0[1].abs_diff(band.0[1]) > 1).count();
+    assert!(far < 77, "{far} of 7680 pixels differ");
 }

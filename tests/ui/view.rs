@@ -112,3 +112,41 @@ fn preferences_and_help_open_and_first_steps_are_told_once() {
         assert!(editor.harness.state().ui.viewport.has_guides);
     }
 }
+
+#[test]
+fn a_region_is_dragged_drawn_alone_and_exported() {
+    let mut editor = Editor::new();
+    editor.harness.state_mut().ui.viewport.picture = Some(picture(1));
+    editor.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::B);
+    editor.harness.run();
+    let area = editor.with_key("viewport").rect();
+    let at = |u: f32, v: f32| Pos2::new(area.left() + u * area.width(), area.top() + v * area.height());
+    let button = |pressed, pos| egui::Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    editor.harness.event(egui::Event::PointerMoved(at(0.25, 0.5)));
+    editor.harness.event(button(true, at(0.25, 0.5)));
+    editor.harness.step();
+    for share in [0.6, 0.7, 0.75] {
+        editor.harness.event(egui::Event::PointerMoved(at(share, share)));
+        editor.harness.step();
+    }
+    editor.harness.event(button(false, at(0.75, 0.75)));
+    editor.harness.run();
+    let region = editor.harness.state().ui.viewport.region.expect("it was dragged");
+    for (seen, wanted) in region.into_iter().zip([0.25, 0.5, 0.75, 0.75]) {
+        assert!((seen - wanted).abs() < 0.01, "{region:?}");
+    }
+    editor.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::E);
+    editor.harness.run();
+    editor.click_label("Export");
+    let asked = editor.requests.borrow().last().cloned();
+    let Some(Request::Export(export)) = asked else { panic!("{asked:?}") };
+    assert_eq!(export.region, Some(region));
+    editor.harness.key_press_modifiers(Modifiers::COMMAND, egui::Key::B);
+    editor.harness.run();
+    assert_eq!(editor.harness.state().ui.viewport.region, None, "all of it again");
+}

@@ -188,6 +188,7 @@ impl Truths {
             size: inputs.size,
             time_secs: inputs.time_secs,
             output: if task.is_measured() { Output::Linear } else { Output::Display },
+            window: inputs.window,
         };
         let (is_there, integrator) = match task {
             Task::Smooth => (self.moment.at_rest.has_begun_smooth(), Integrator::Realtime),

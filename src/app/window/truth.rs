@@ -94,6 +94,23 @@ impl App {
     }
 }
 
+impl Live {
+    /// Keeps the picture as it was before only a region of it is drawn, to lie behind that.
+    pub(super) fn keep_backdrop(&mut self, session: &mut Session) {
+        let is_kept = session.ui.viewport.backdrop.is_some();
+        if session.ui.viewport.region.is_none() {
+            session.ui.viewport.backdrop = None;
+        } else if !is_kept
+            && let Ok((size, pixels)) = self.shown_rgba8(session)
+            && !pixels.is_empty()
+        {
+            let image = egui::ColorImage::from_rgba_unmultiplied(size.map(|side| side as usize), &pixels);
+            let texture = self.egui.context().load_texture("backdrop", image, egui::TextureOptions::LINEAR);
+            session.ui.viewport.backdrop = Some((texture, size).into());
+        }
+    }
+}
+
 impl App {
     /// Remembers what wants a picture: the one that is shown may still be that of another sky.
     pub(super) fn wait_for_picture(&mut self, request: Request) {

@@ -108,7 +108,7 @@ fn show_at(
     size: [u32; 2],
     time_secs: f64,
 ) -> Result<Shown, VerifyError> {
-    renderer.render(&Frame { scene, quality, size, time_secs, output: Output::Linear })?;
+    renderer.render(&Frame { scene, quality, size, time_secs, output: Output::Linear, window: None })?;
     Ok(Shown { image: renderer.linear()?, clouds: renderer.clouds()? })
 }
 
@@ -350,7 +350,8 @@ fn small_pictures(renderer: &mut Renderer) -> Result<Finding, VerifyError> {
         for update in [UpdateFraction::Full, UpdateFraction::Sixteenth] {
             let quality = Quality { update, ..quality() };
             let seen = show_at(renderer, (&scene, &quality), size, 0.0)?;
-            let frame = Frame { scene: &scene, quality: &quality, size, time_secs: 0.0, output: Output::Display };
+            let frame =
+                Frame { scene: &scene, quality: &quality, size, time_secs: 0.0, output: Output::Display, window: None };
             renderer.render(&frame)?;
             let shown = renderer.clouds()?;
             let is_light = |value: &f32| value.is_finite() && *value >= 0.0;
@@ -365,7 +366,14 @@ fn small_pictures(renderer: &mut Renderer) -> Result<Finding, VerifyError> {
 fn camera_cut(renderer: &mut Renderer) -> Result<Finding, VerifyError> {
     let quality = Quality { update: UpdateFraction::Quarter, ..quality() };
     let show = |renderer: &mut Renderer, scene: &Scene| -> Result<Vec<[f32; 4]>, VerifyError> {
-        renderer.render(&Frame { scene, quality: &quality, size: SIZE, time_secs: 0.0, output: Output::Display })?;
+        renderer.render(&Frame {
+            scene,
+            quality: &quality,
+            size: SIZE,
+            time_secs: 0.0,
+            output: Output::Display,
+            window: None,
+        })?;
         Ok(renderer.clouds()?)
     };
     let here = Scene::default();
@@ -392,6 +400,7 @@ fn bright_sun(renderer: &mut Renderer) -> Result<Finding, VerifyError> {
             size: SIZE,
             time_secs: 0.0,
             output: Output::Display,
+            window: None,
         })?;
     }
     let is_light = |value: &f32| value.is_finite() && *value >= 0.0;

@@ -244,7 +244,7 @@ pub fn brightest(drawn: &Drawn) -> f64 {
 /// [`VerifyError::Render`] and [`VerifyError::Gpu`].
 pub fn show(renderer: &mut Renderer, drawn: &Drawn) -> Result<Shown, VerifyError> {
     let Drawn { scene, quality, time_secs } = drawn;
-    let frame = Frame { scene, quality, size: SIZE, time_secs: *time_secs, output: Output::Linear };
+    let frame = Frame { scene, quality, size: SIZE, time_secs: *time_secs, output: Output::Linear, window: None };
     let mut take = || -> Result<_, VerifyError> {
         renderer.forget_history();
         renderer.render(&frame)?;

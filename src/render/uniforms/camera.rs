@@ -1,9 +1,9 @@
 //! The eye, in f64 in the world and in f32 relative to the sea-level point below it.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::scene::CameraUniforms;
-use crate::scene::{Camera, Projection};
+use crate::scene::{Camera, Frame, Projection};
 
 /// Where the eye is and what it looks at.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,12 +21,15 @@ impl Eye {
     }
 }
 
-/// The camera as shaders take it, `eye` seen from the sea-level point below `origin`.
-pub(crate) fn camera_uniforms(camera: &Camera, size: [u32; 2], eye: &Eye, origin: &Eye) -> CameraUniforms {
+/// The frame's camera as shaders take it, `eye` seen from the sea-level point below `origin`.
+#[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
+pub(crate) fn camera_uniforms(frame: &Frame<'_>, eye: &Eye, origin: &Eye) -> CameraUniforms {
+    let camera = &frame.scene.camera;
+    let (offset_share, size_share) = frame.window_shares();
     let [heading_deg, pitch_deg, roll_deg] = eye.turned_deg;
     let [forward, right, up] = Camera { heading_deg, pitch_deg, roll_deg, ..camera.clone() }.axes();
     let [scale_right, scale_up] = match camera.projection {
-        Projection::Perspective => camera.half_tangents(size),
+        Projection::Perspective => camera.half_tangents(frame.whole_size()),
         Projection::Equirect | Projection::Dome => [1.0, 1.0],
     };
     let offset = eye.position - origin.position;
@@ -43,5 +46,7 @@ pub(crate) fn camera_uniforms(camera: &Camera, size: [u32; 2], eye: &Eye, origin
         pad0: 0.0,
         up: up * scale_up,
         pad1: 0.0,
+        window_offset: Vec2::from_array(offset_share.map(|share| share as f32)),
+        window_size: Vec2::from_array(size_share.map(|share| share as f32)),
     }
 }

@@ -24,6 +24,10 @@ gpu_struct! {
         pub up: Vec3,
         /// Keeps the vectors apart.
         pub pad1: f32,
+        /// Where the picture begins in the whole that it may be a part of, 0 to 1.
+        pub window_offset: Vec2,
+        /// Its size in that whole.
+        pub window_size: Vec2,
     }
 
     /// One picture: sizes, cameras, and which pixels are computed.
