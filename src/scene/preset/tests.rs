@@ -183,12 +183,16 @@ fn kept_cameras_come_back_and_faulty_ones_are_named() {
         ("height_m", "hight_m", "height_m"),
         ("300.0", "high", "a number"),
         ("name:", "title:", "title"),
-        ("cameras: [", "cameras: 3, tags: [", "cameras"),
     ] {
         let broken = text.replacen(from, to, 1);
         let broken = if from == "name:" { text.replace("(name:", "(title:") } else { broken };
         let error = Preset::from_ron(&broken, "seen.ron").expect_err(says).to_string();
         assert!(error.starts_with("seen.ron:") && error.contains(says), "{from}: {error}");
+    }
+    for (cameras, says) in [("3", "cameras is `3`"), ("[7]", "cameras is `7`")] {
+        let broken = format!("(version: 2, cameras: {cameras})");
+        let error = Preset::from_ron(&broken, "seen.ron").expect_err(says).to_string();
+        assert!(error.starts_with("seen.ron:1:") && error.contains(says), "{error}");
     }
     preset.cameras = vec![Bookmark::default(); 10];
     let error = Preset::from_ron(&preset.to_ron(), "many.ron").expect_err("ten").to_string();
