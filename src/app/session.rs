@@ -1,6 +1,7 @@
 //! The editor without its window: document, panels, and the rules about losing changes. Tests drive this.
 
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::action::{Action, Answer, Browse, Part, Request};
 use super::document::Document;
@@ -71,16 +72,24 @@ pub struct Session {
     pending: Option<Request>,
     /// What a crash left behind, until the user decides.
     recovered: Option<Preset>,
+    /// When the folder of presets had changed last when it was read.
+    listed: Option<SystemTime>,
+}
+
+/// When a folder's list of files changed last; `None` if there is none.
+fn changed(folder: &Path) -> Option<SystemTime> {
+    std::fs::metadata(folder).and_then(|about| about.modified()).ok()
 }
 
 impl Session {
     /// A session that edits `document`.
     pub fn new(document: Document, folders: Folders) -> Self {
+        let listed = changed(&folders.presets);
         let library = storage::library(&folders.presets, &folders.thumbnails());
         let ui = ui::State { library, ..ui::State::default() };
         let preferences = Preferences::load(&folders.state.join(PREFERENCES));
         let kept = preferences.clone();
-        Self { document, ui, folders, preferences, kept, pending: None, recovered: None, warned_of: None }
+        Self { document, ui, folders, preferences, kept, pending: None, recovered: None, warned_of: None, listed }
     }
 
     /// Whether the user has not decided yet about what a crash left behind.
@@ -419,7 +428,15 @@ impl Session {
         }
     }
 
+    /// Lists the presets anew if others have put some into the folder, or taken some away.
+    pub fn notice_presets(&mut self) {
+        if changed(&self.folders.presets) != self.listed {
+            self.refresh_library();
+        }
+    }
+
     fn refresh_library(&mut self) {
+        self.listed = changed(&self.folders.presets);
         self.ui.library.refresh(storage::library(&self.folders.presets, &self.folders.thumbnails()));
     }
 }

@@ -190,6 +190,10 @@ impl ApplicationHandler<Event> for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if event == WindowEvent::Focused(true) {
+            // Whoever comes back may have saved a preset elsewhere.
+            self.session.notice_presets();
+        }
         let Some(live) = &mut self.live else { return };
         if truth::is_input(&event) {
             live.viewport.truths.touch(Instant::now());

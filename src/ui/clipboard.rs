@@ -41,7 +41,7 @@ pub(super) fn is_reset_pressed(ui: &Ui) -> bool {
 
 /// The menu on the name of a parameter or section; only a parameter of the sky can have keys.
 pub(super) fn menu(name: &Response, key: &str, title: &str, (modified, can_move): (bool, bool), reset: &mut bool) {
-    name.context_menu(|ui| {
+    super::menu::on(name, |ui| {
         ui.set_min_width(150.0);
         let wish = |ui: &Ui, wish: Wish| ui.data_mut(|data| data.insert_temp(wish_id(), wish));
         if ui.button(format!("Copy {title}")).clicked() {

@@ -148,7 +148,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 43] = [
 ];
 
 /// What mice and held keys do, for the sheet.
-pub(super) const GESTURES: [(&str, &str); 18] = [
+pub(super) const GESTURES: [(&str, &str); 19] = [
     ("Right mouse held", "Look around"),
     ("… with W A S D", "Fly forwards, left, back, right"),
     ("… with Q E", "Fly down, up"),
@@ -166,6 +166,7 @@ pub(super) const GESTURES: [(&str, &str); 18] = [
     ("… elsewhere", "Copy the picture, paste a sky"),
     ("Backspace on a name", "Reset a parameter"),
     ("K on a name", "Set a key at this time"),
+    ("Shift+F10", "Menu of what has the focus"),
     ("Ctrl and + − 0", "Size of the panels"),
 ];
 
@@ -343,7 +344,9 @@ pub(super) fn take(ui: &mut Ui, state: &mut State, document: &Document) -> Vec<A
         let free = command == Command::HideAll && state.hide_all;
         // Text has steps of its own to undo, and its keys go through words.
         let is_of_text = matches!(command, Command::Undo | Command::Redo | Command::ViewBack | Command::ViewForth);
-        if asking || has_text && is_of_text || typing && command.yields_to_focus() && !free {
+        // Shift+F10 opens menus.
+        let is_of_menus = command == Command::Overlay && ui.input(|input| input.modifiers.shift);
+        if is_of_menus || asking || has_text && is_of_text || typing && command.yields_to_focus() && !free {
             continue;
         }
         if ui.input_mut(|input| input.consume_shortcut(&command.shortcut())) {

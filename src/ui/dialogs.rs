@@ -139,6 +139,14 @@ fn unsaved(ui: &mut Ui, document: &Document, before: &str, actions: &mut Vec<Act
     Fate::Closes
 }
 
+/// Gives a field the focus while nothing has it, so that a form can be filled in by the keyboard at once.
+fn take_focus(ui: &Ui, field: &egui::Response) {
+    // Enter takes the focus away, and means the whole form.
+    if !field.lost_focus() && ui.memory(|memory| memory.focused().is_none()) {
+        field.request_focus();
+    }
+}
+
 /// A path with a button for the system's dialog; returns whether Enter was pressed in it.
 pub(super) fn path_field(ui: &mut Ui, path: &mut String, browse: Browse, actions: &mut Vec<Action>) -> bool {
     ui.label("Path");
@@ -146,6 +154,7 @@ pub(super) fn path_field(ui: &mut Ui, path: &mut String, browse: Browse, actions
         let width = ui.available_width() - 84.0;
         let response = ui.add(egui::TextEdit::singleline(path).desired_width(width).hint_text("path of the file"));
         row::name(ui, &response, "Path", "dialog.path");
+        take_focus(ui, &response);
         if ui.button("Browse…").clicked() {
             actions.push(Action::Ask(Request::Browse(browse)));
         }
@@ -195,6 +204,7 @@ fn save_as(
     ui.label("Name");
     let response = ui.add(egui::TextEdit::singleline(name).desired_width(f32::INFINITY).hint_text("Untitled"));
     row::name(ui, &response, "Name", "dialog.name");
+    take_focus(ui, &response);
     let entered = path_field(ui, path, Browse::SaveAs, actions);
     let ready = !path.trim().is_empty();
     match confirm(ui, "Save", ready).or((entered && ready).then_some(true)) {

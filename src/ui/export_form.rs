@@ -146,7 +146,7 @@ fn frames(ui: &mut Ui, form: &mut ExportForm) {
 /// Draws the form.
 pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>) -> Fate {
     ui.heading("Export pictures");
-    ui.label("Rendered at once in full; the preset is stored in the file, so that opening it restores this sky.");
+    ui.label("Rendered in full. PNG and EXR hold the preset: opening one restores this sky.");
     ui.horizontal_wrapped(|ui| {
         for still in Still::ALL {
             let choice = ui.selectable_label(form.still == *still, still.title());

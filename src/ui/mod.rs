@@ -10,6 +10,7 @@ mod histogram;
 mod history;
 mod inspector;
 mod lab;
+mod menu;
 mod overlay;
 mod palette;
 mod panel;

@@ -305,7 +305,7 @@ impl Gallery<'_> {
         if response.clicked() {
             self.actions.push(open(Request::Open(entry.source.clone())));
         }
-        response.context_menu(|ui| {
+        super::menu::on(&response, |ui| {
             let source = || entry.source.clone();
             if ui.button("Open").clicked() {
                 self.actions.push(open(Request::Open(source())));

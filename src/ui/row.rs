@@ -74,6 +74,7 @@ fn frame(
         (false, false) => text,
     };
     let heading = label_ui.add(egui::Label::new(text).truncate().selectable(false).sense(egui::Sense::click()));
+    name(ui, &heading, title, &format!("{}.label", help.key));
     let heading = heading.on_hover_ui(|ui| {
         ui.set_max_width(340.0);
         ui.label(help.text());

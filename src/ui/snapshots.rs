@@ -275,7 +275,7 @@ fn thumbnail(
         } else if response.clicked() {
             *wish = Some(Wish::Choose(index));
         }
-        response.context_menu(|ui| {
+        super::menu::on(&response, |ui| {
             let entries =
                 [("Restore", Wish::Restore(index)), ("Compare", Wish::Choose(index)), ("Remove", Wish::Remove(index))];
             for (title, wanted) in entries {

@@ -361,3 +361,22 @@ fn text_has_its_own_undo() {
     editor.harness.run();
     assert_eq!(editor.scene().weather.coverage, 0.7, "the sky is as it was");
 }
+
+#[test]
+fn presets_that_others_put_into_the_folder_are_listed() {
+    let mut editor = Editor::new();
+    let folder = editor.harness.state().folders.presets.clone();
+    assert!(!editor.has_label("From elsewhere"));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let path = folder.join("elsewhere.ron");
+    Preset::new("From elsewhere", Scene::default()).save(&path).expect("written");
+    editor.harness.state_mut().notice_presets();
+    let listed = |editor: &Editor| editor.harness.state().ui.library.user.iter().any(|entry| entry.source == path);
+    assert!(listed(&editor), "it is there");
+    std::fs::remove_file(&path).expect("removed");
+    // File systems count time in steps.
+    std::thread::sleep(std::time::Duration::from_millis(20));
+    std::fs::write(folder.join("other.txt"), "").expect("written");
+    editor.harness.state_mut().notice_presets();
+    assert!(!listed(&editor), "it is gone");
+}

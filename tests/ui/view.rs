@@ -150,3 +150,15 @@ fn a_region_is_dragged_drawn_alone_and_exported() {
     editor.harness.run();
     assert_eq!(editor.harness.state().ui.viewport.region, None, "all of it again");
 }
+
+#[test]
+fn menus_open_by_the_keyboard() {
+    let mut editor = Editor::new();
+    editor.reach("weather.coverage.label");
+    editor.with_key("weather.coverage.label").focus();
+    editor.harness.run();
+    editor.harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::F10);
+    editor.harness.run();
+    editor.click_label("Copy Coverage");
+    assert!(!editor.has_label("Copy Coverage"), "the menu closes");
+}
