@@ -13,7 +13,7 @@ temporary_folder
 folder=$made_folder
 mkdir "$folder/screen" "$folder/home" "$folder/work"
 
-Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp -fbdir "$folder/screen" 3>"$folder/display" 2>"$folder/xvfb.log" &
+Xvfb -displayfd 3 -screen 0 1280x800x24 -nolisten tcp -noreset -fbdir "$folder/screen" 3>"$folder/display" 2>"$folder/xvfb.log" &
 server=$!
 ended_on_exit+=("$server")
 for _ in {1..100}; do

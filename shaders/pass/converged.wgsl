@@ -71,7 +71,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   let first_end = min(segments.first.y, limit);
   let second_end = min(segments.second.y, limit);
   prepare_light(dir);
-  var transmittance = 1.0 - ray.opacity;
+  var transmittance = exp(-ray.depth);
   var t = max(ray.distance_m, segments.first.x);
   var steps = 0u;
   var light_steps = 0u;
@@ -121,7 +121,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     atomicAdd(&counters[0], 1u);
     lost += select(truth.per_dispatch - steps, 0u, is_paused);
   }
-  ray.opacity = 1.0 - transmittance;
+  ray.depth = -log(max(transmittance, 1e-30));
   ray.distance_m = t;
   marched_rays[index] = ray;
   atomicAdd(&counters[1], steps);

@@ -2,8 +2,9 @@
 
 struct MarchedRay {
   light: vec3f,
-  // Share of light that the cloud before the ray's place takes, so that an empty buffer is a fresh ray.
-  opacity: f32,
+  // Optical depth of the cloud before the ray's place: an empty buffer is a fresh ray, and what little light comes through
+  // thick cloud loses nothing between dispatches.
+  depth: f32,
   // Where it goes on; 0 before its first step.
   distance_m: f32,
   // Sums for the mean distance of what is seen.

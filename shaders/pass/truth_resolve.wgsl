@@ -43,6 +43,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   let count = f32(max(paths[index].samples, 1u));
   let light = sums.light / count;
   let opacity = sums.hits / count;
+  let transmittance = 1.0 - opacity;
   let distance_m = sums.distance_m / max(sums.hits, 1.0);
   // A sample's light is either the cloud's or the background's: L + (1 - O) b with L = L O.
   let behind = textureLoad(background, pixel, 0).rgb;
@@ -53,13 +54,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
 #else
   let ray = marched_rays[index];
   let light = ray.light;
-  let opacity = ray.opacity;
+  let transmittance = exp(-ray.depth);
   let distance_m = ray.distance_sum / max(ray.weight_sum, 1e-6);
 #endif
 #if FLOAT
-  textureStore(cloud_out, pixel, vec4f(light, 1.0 - opacity));
+  textureStore(cloud_out, pixel, vec4f(light, transmittance));
 #else
-  textureStore(cloud_out, pixel, sanitise4(vec4f(light, 1.0 - opacity)));
+  textureStore(cloud_out, pixel, sanitise4(vec4f(light, transmittance)));
 #endif
 #if DISTANCE
   textureStore(distance_out, pixel, vec4f(distance_m, 0.0, 0.0, 0.0));

@@ -15,8 +15,8 @@ const EYE_M: [f32; 2] = [500.0, 2500.0];
 const MOST_SIGMAS: f64 = 3.5;
 /// What the picture's own width (a degree) and steps may make of it, relative.
 const OWN_ERROR: f64 = 0.002;
-/// Radiance, of a sun of irradiance 1, that is rounding: between dispatches a ray keeps its opacity, whose last bit is 6e-8.
-const LEAST_LIGHT: f64 = 1e-7;
+/// Radiance, of a sun of irradiance 1, that is rounding: of what it is added to, whose last bit is 1e-8 or less.
+const LEAST_LIGHT: f64 = 1e-8;
 
 /// A slab over black ground, a sun of irradiance 1, and a direction of view.
 #[derive(Clone, Copy, Debug)]
