@@ -436,7 +436,8 @@ fn pictures_go_out_in_all_formats_and_shapes() {
     renders(&folder, &args);
     assert!(std::fs::read(there("all.hdr")).expect("written").starts_with(b"#?RADIANCE"));
     let cube = ["--projection", "cube", "--size", "16x16", "--quality", "draft"];
-    renders(&folder, &[&["pano", "fair_weather", "-o", "sky.exr"][..], &cube].concat());
+    let output = renders(&folder, &[&["pano", "fair_weather", "-o", "sky.exr"][..], &cube].concat());
+    assert!(stdout(&output).contains("sky.nz.exr 16x16"), "{}", stdout(&output));
     for face in ["px", "nx", "py", "ny", "pz", "nz"] {
         renders(&folder, &["presets", "validate", &format!("sky.{face}.exr")]);
     }
@@ -464,6 +465,7 @@ fn what_a_sky_is_made_from_goes_out() {
     refuses(&folder, &export("wether-map", "a.exr"), 2, &["did you mean weather-map?"]);
     refuses(&folder, &export("curl-noise", "a.exr"), 2, &["has no curl-noise"]);
     refuses(&folder, &export("weather-map", "a.jpg"), 2, &["neither in .exr nor in .png"]);
+    refuses(&folder, &export("clear-ways", "a.png"), 4, &["a PNG holds 0 to 1"]);
 }
 
 #[test]
@@ -485,6 +487,7 @@ fn a_film_follows_the_keys_of_its_sky() {
         command.output().expect("the program starts")
     };
     let without = run(Path::new("/nowhere"));
+    refuses(&folder, &[&film[..], &["--video", "no/film.mp4"]].concat(), 4, &["there is no folder"]);
     assert_eq!(without.status.code(), Some(2), "{}", stderr(&without));
     assert!(stderr(&without).contains("install it"), "{}", stderr(&without));
     assert!(!folder.path().join("f.00.png").exists(), "nothing is begun that cannot end");
@@ -506,6 +509,16 @@ fn a_film_follows_the_keys_of_its_sky() {
         image.pixels().map(|pixel| u64::from(pixel[1])).sum::<u64>()
     };
     assert!(brightness("f.01.png") > 2 * brightness("f.00.png"), "the sun has risen");
+    // A picture opens at its own time, and what is set holds at all times.
+    renders(&folder, &["render", "f.01.png", "-o", "again.png", "--size", "16x9", "--quality", "draft"]);
+    let gap = brightness("again.png").abs_diff(brightness("f.01.png"));
+    assert!(gap * 50 < brightness("f.01.png"), "{gap}");
+    let set = ["--set", "sun.elevation_deg=60", "--time", "0"];
+    renders(
+        &folder,
+        &[&["render", "dawn.ron", "-o", "set.png", "--size", "16x9", "--quality", "draft"], &set[..]].concat(),
+    );
+    assert!(brightness("set.png") > 2 * brightness("f.00.png"), "keys give way");
 }
 
 #[test]

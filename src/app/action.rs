@@ -50,6 +50,8 @@ pub enum Action {
     },
     /// Exposure in stops, relative to now; positive is darker, as on a camera.
     ChangeExposure(f32),
+    /// The same by the light meter, which leaves no step behind.
+    MeterExposure(f32),
     /// The preset's name was edited.
     Rename(String),
     /// Time runs or stands.
@@ -88,6 +90,8 @@ pub enum Action {
         path: Option<PathBuf>,
         /// What that file held.
         saved: Box<Preset>,
+        /// The time that it shows, in seconds since the scene began.
+        time_secs: f64,
     },
     /// Take the last step back.
     Undo,
@@ -325,6 +329,8 @@ impl Action {
                 | Self::MoveCamera(_)
                 | Self::ResetCamera
                 | Self::GoToCamera(_)
+                | Self::ViewBack
+                | Self::ViewForth
                 | Self::TurnSun { .. }
                 | Self::ChangeExposure(_)
         )
@@ -343,6 +349,7 @@ impl Action {
             Self::EditCameras { step, .. } => (*step).to_owned(),
             Self::TurnSun { .. } => "move the sun".to_owned(),
             Self::ChangeExposure(_) => "change the exposure".to_owned(),
+            Self::MeterExposure(_) => "meter the light".to_owned(),
             Self::Rename(_) => "rename".to_owned(),
             Self::Play(true) => "play".to_owned(),
             Self::Play(false) => "pause".to_owned(),

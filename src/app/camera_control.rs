@@ -86,9 +86,10 @@ impl CameraControl {
     }
 
     /// Shifts the camera across the view by a drag in pixels, so that the point ahead stays under the pointer.
-    pub fn pan(&self, camera: &mut Camera, pixels: Vec2, height_px: f32) {
+    pub fn pan(&self, camera: &mut Camera, pixels: Vec2, size_px: [u32; 2]) {
         let [_, right, up] = camera.axes();
-        let per_pixel = 2.0 * f64::from(camera.half_tangents([1, 1])[1]) * self.pivot_m / f64::from(height_px.max(1.0));
+        let size_px = size_px.map(|side| side.max(1));
+        let per_pixel = 2.0 * f64::from(camera.half_tangents(size_px)[1]) * self.pivot_m / f64::from(size_px[1].max(1));
         let step = up.as_dvec3() * f64::from(pixels.y) - right.as_dvec3() * f64::from(pixels.x);
         place(camera, position(camera) + step * per_pixel);
     }
@@ -192,7 +193,7 @@ mod tests {
         control.dolly(&mut camera, -200.0);
         assert!((position(&camera).distance(point) - PIVOT_M).abs() < 5.0, "and back");
         let (control, mut camera) = (CameraControl::default(), start.clone());
-        control.pan(&mut camera, Vec2::new(100.0, 50.0), 500.0);
+        control.pan(&mut camera, Vec2::new(100.0, 50.0), [800, 500]);
         // The point was in the middle of the picture; now it is 100 pixels to the right and 50 below.
         let way = (point - position(&camera)).as_vec3();
         let [forward, right, up] = camera.axes();

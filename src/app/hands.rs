@@ -83,11 +83,11 @@ impl Hands {
         }
     }
 
-    /// What a gesture over the picture, so many points high, asks of the document.
+    /// What a gesture over the picture, so many points large, asks of the document.
     pub(super) fn gesture(
         &mut self,
         window: &Window,
-        (document, height_pt): (&Document, f32),
+        (document, size_pt): (&Document, [u32; 2]),
         gesture: Gesture,
     ) -> Option<Action> {
         let mut camera = document.preset().scene.camera.clone();
@@ -101,7 +101,7 @@ impl Hands {
                 Some(Action::MoveCamera(camera))
             }
             Gesture::Pan(drag) => {
-                self.control.pan(&mut camera, Vec2::new(drag.x, drag.y), height_pt);
+                self.control.pan(&mut camera, Vec2::new(drag.x, drag.y), size_pt);
                 Some(Action::MoveCamera(camera))
             }
             Gesture::Dolly(way) => {

@@ -34,7 +34,6 @@ use crate::files;
 use crate::gpu::AdapterChoice;
 use crate::scene::Quality;
 use crate::scene::builtin::BUILTINS;
-use crate::scene::edit;
 
 /// How the editor starts.
 #[derive(Clone, Debug, Default)]
@@ -77,9 +76,11 @@ fn open(options: &Options) -> anyhow::Result<Document> {
     let first = BUILTINS.first().map(|builtin| PathBuf::from(builtin.name));
     let source = options.scene.clone().or(first).unwrap_or_default();
     let mut document = session::document_of(files::open(&source)?, Quality::default());
-    let (mut scene, mut quality) = (document.preset().scene.clone(), document.quality().clone());
-    edit::apply(&options.sets, &mut scene, &mut quality)?;
-    document.apply(&Action::EditScene { key: "--set".to_owned(), scene: Box::new(scene) });
+    let (mut preset, mut quality) = (document.preset().clone(), document.quality().clone());
+    preset.set_all(&options.sets, &mut quality)?;
+    let step = "--set".to_owned();
+    document.apply(&Action::EditAnimation { step: step.clone(), animation: Box::new(preset.animation) });
+    document.apply(&Action::EditScene { key: step, scene: Box::new(preset.scene) });
     document.apply(&Action::EditQuality { key: "--set".to_owned(), quality: Box::new(quality) });
     Ok(document)
 }

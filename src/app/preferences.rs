@@ -17,7 +17,7 @@ const MOST_BYTES: u64 = 1 << 20;
 choices! {
     /// Whose habits of the mouse the picture follows. The right button looks and flies in all of them.
     pub enum Habit {
-        /// Middle orbits, with Shift it pans, with Ctrl it moves nearer. So does Shift with the left one.
+        /// Middle orbits, with Shift it pans, with Ctrl it moves nearer. Shift and the left one orbit too.
         Blender ("Blender"),
         /// With Alt the left orbits, the middle pans, the right moves nearer.
         Maya ("Maya"),

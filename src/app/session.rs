@@ -153,7 +153,7 @@ impl Session {
             action => {
                 let sun = &self.document.preset().scene.sun;
                 if matches!(action, Action::DayLapse { .. }) && sun.daylight().is_none() {
-                    let say = "The sun does not rise and set on this day at this place: choose others in section Sun";
+                    let say = "The sun does not come up on this day at this place: choose others in section Sun";
                     self.ui.toasts.error(say);
                     return None;
                 }
@@ -444,8 +444,10 @@ impl Session {
 /// The document of an opened sky. The window keeps the user's quality: the level that a preset names, and the settings
 /// that a still was rendered with, are meant for stills, and would make the window crawl.
 pub(super) fn document_of(sky: Sky, quality: Quality) -> Document {
-    match sky.origin {
+    let mut document = match sky.origin {
         Origin::Preset(path) => Document::from_file(sky.preset, quality, path),
         Origin::Builtin(_) | Origin::Picture(_) | Origin::Grid(_) => Document::new(sky.preset, quality),
-    }
+    };
+    document.apply(&Action::Seek(sky.time_secs));
+    document
 }

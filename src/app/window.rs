@@ -335,7 +335,9 @@ impl App {
             self.inspect();
             self.take_pictures();
         }
-        self.meter(is_new);
+        if let Some(again) = self.meter(is_new) {
+            wake = sooner(wake, again);
+        }
         let refined = self.refine(is_idle);
         if refined.has_worked {
             fastest = FASTEST_PANELS_BESIDE_WORK;
@@ -365,7 +367,6 @@ impl App {
         live.due = None;
         live.show_truth(&mut self.session);
         live.show_difference(&mut self.session);
-        live.keep_backdrop(&mut self.session);
         let Some(surface) = &mut live.surface else { return };
         surface.follow_window(&live.gpu);
         let viewport = &mut self.session.ui.viewport;
@@ -378,12 +379,14 @@ impl App {
         let again = live.egui.frame((&live.window, event_loop), &live.gpu, surface, &mut |ui| {
             requests.extend(session.frame(ui, &readout));
         });
+        // Before the next picture, which may be that of a region.
+        live.keep_backdrop(&mut self.session);
         if again < Duration::MAX {
             live.draw_within(again.max(MOVING_PANELS));
         }
         for gesture in std::mem::take(&mut self.session.ui.viewport.gestures) {
-            let height_pt = self.session.ui.viewport.rect.height();
-            if let Some(action) = live.hands.gesture(&live.window, (&self.session.document, height_pt), gesture) {
+            let size_pt = self.session.ui.viewport.size_px(1.0);
+            if let Some(action) = live.hands.gesture(&live.window, (&self.session.document, size_pt), gesture) {
                 self.session.document.apply(&action);
             }
         }

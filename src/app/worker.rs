@@ -14,11 +14,11 @@ use super::lab::News;
 use super::truth::{CompareJob, Compared};
 use super::viewport::pixels_of;
 use crate::export::exr::ExrOptions;
-use crate::files::{About, Content, CubeLayout, LARGEST_WHOLE, StillFile, save_png};
+use crate::files::{About, Content, CubeLayout, StillFile, files_of_still, save_png};
 use crate::gpu::Gpu;
 use crate::images::pattern::FramePattern;
 use crate::render::Renderer;
-use crate::scene::{Preset, Quality};
+use crate::scene::{LARGEST_WHOLE_PX, Preset, Quality};
 
 /// What reaches the event loop from outside the window.
 #[derive(Debug)]
@@ -208,6 +208,14 @@ fn content(still: Still) -> Content {
     }
 }
 
+fn cube(shape: Shape) -> Option<CubeLayout> {
+    match shape {
+        Shape::Camera | Shape::Panorama => None,
+        Shape::CubeFaces => Some(CubeLayout::Faces),
+        Shape::CubeCross => Some(CubeLayout::Cross),
+    }
+}
+
 /// Files and times of all pictures that are to be written.
 fn pictures(job: &StillJob) -> anyhow::Result<Vec<(PathBuf, f64)>> {
     let Some(frames) = job.export.frames else { return Ok(vec![(job.export.path.clone(), job.time_secs)]) };
@@ -216,7 +224,8 @@ fn pictures(job: &StillJob) -> anyhow::Result<Vec<(PathBuf, f64)>> {
     let speed = job.preset.animation.speed;
     let numbers = (frames.first..=frames.last).step_by(frames.step.max(1) as usize);
     let all = numbers.map(|frame| (pattern.path_of(frame), speed * f64::from(frame) / frames.fps));
-    Ok(all.filter(|(path, _)| !frames.keeps || !path.exists()).collect())
+    let is_there = |path: &Path| files_of_still(path, cube(job.export.shape)).iter().all(|path| path.exists());
+    Ok(all.filter(|(path, _)| !frames.keeps || !is_there(path)).collect())
 }
 
 /// A renderer of its own on the same device, so that the window's keeps its history and its picture. Returns whether all was
@@ -224,6 +233,10 @@ fn pictures(job: &StillJob) -> anyhow::Result<Vec<(PathBuf, f64)>> {
 fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result<bool> {
     let mut renderer = Renderer::new(&job.gpu)?;
     let pictures = pictures(job)?;
+    anyhow::ensure!(
+        !pictures.is_empty(),
+        "all frames are there already; untick “Keep what is there” to render them again"
+    );
     for (index, (path, time_secs)) in pictures.iter().enumerate() {
         let mut preset = job.preset.clone();
         preset.scene = preset.at(*time_secs);
@@ -231,12 +244,8 @@ fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result
             path,
             content: content(job.export.still),
             size: job.export.size,
-            cube: match job.export.shape {
-                Shape::Camera | Shape::Panorama => None,
-                Shape::CubeFaces => Some(CubeLayout::Faces),
-                Shape::CubeCross => Some(CubeLayout::Cross),
-            },
-            largest_whole: LARGEST_WHOLE,
+            cube: cube(job.export.shape),
+            largest_whole: LARGEST_WHOLE_PX,
             region: job.export.region.map(|region| pixels_of(region, job.export.size)),
             about: About { preset: &preset, quality: &job.quality, time_secs: *time_secs },
         };

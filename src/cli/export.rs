@@ -13,7 +13,7 @@ use crate::render::Renderer;
 use crate::render::tables::TableKind;
 use crate::scene::nearest::did_you_mean;
 use crate::scene::param::Choice as _;
-use crate::scene::{Frame, Output, Quality, edit};
+use crate::scene::{Frame, Output, Quality};
 
 #[derive(Debug, Args)]
 #[command(after_help = "Parts: weather-map, shape-noise, worley-noise, detail-noise, curl-noise, relief, clear-ways, \
@@ -49,8 +49,8 @@ pub(super) fn run(args: &ExportArgs) -> Result<()> {
     }
     let mut preset = files::open(&args.scene)?.preset;
     let mut quality = Quality::default();
+    preset.set_all(&args.edits.sets, &mut quality)?;
     preset.play(args.time);
-    edit::apply(&args.edits.sets, &mut preset.scene, &mut quality)?;
     let gpu = Gpu::headless(&args.device.choice())?;
     let mut renderer = Renderer::new(&gpu)?;
     let (scene, time_secs) = (&preset.scene, args.time);

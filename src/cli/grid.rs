@@ -12,7 +12,7 @@ use crate::gpu::Gpu;
 use crate::images::voxels::{UpAxis, VdbOptions};
 use crate::plan::{Effect, FramePlan};
 use crate::render::Renderer;
-use crate::scene::{DomainKind, Frame, Output, Quality, edit};
+use crate::scene::{DomainKind, Frame, Output, Quality};
 
 #[derive(Debug, Args)]
 pub(super) struct GridArgs {
@@ -82,7 +82,8 @@ pub(super) fn run(args: &GridArgs) -> Result<()> {
     let mut preset = files::open(&args.scene)?.preset;
     let mut quality = Quality { grid_voxels: args.voxels, ..Quality::default() };
     preset.scene.domain.kind = DomainKind::Box;
-    edit::apply(&args.edits.sets, &mut preset.scene, &mut quality)?;
+    preset.set_all(&args.edits.sets, &mut quality)?;
+    preset.play(args.time);
     let gpu = Gpu::headless(&args.device.choice())?;
     let mut renderer = Renderer::new(&gpu)?;
     let frame = Frame {

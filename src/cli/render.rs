@@ -16,15 +16,15 @@ use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
 use crate::files::{
-    self, About, Content, CubeLayout, FileError, KeptPrograms, LARGEST_WHOLE, StillError, StillFile, save_exr, save_png,
+    self, About, Content, CubeLayout, FileError, KeptPrograms, StillError, StillFile, files_of_still, save_exr,
+    save_png,
 };
 use crate::gpu::Gpu;
 use crate::images::pattern::{FramePattern, parse_frame_range};
-use crate::plan::Forced;
+use crate::plan::{Forced, FramePlan};
 use crate::render::Renderer;
 use crate::render::truth::Goal;
-use crate::scene::edit;
-use crate::scene::{Frame, Output, Preset, Projection, Quality, UpdateFraction};
+use crate::scene::{Frame, LARGEST_WHOLE_PX, Output, Preset, Projection, Quality, UpdateFraction};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct RenderArgs {
@@ -44,8 +44,9 @@ pub(super) struct RenderArgs {
     #[arg(long)]
     projection: Option<ProjectionArg>,
     /// Seconds since the scene began.
-    #[arg(long, value_parser = args::finite, default_value = "0", value_name = "SECONDS", allow_negative_numbers = true)]
-    time: f64,
+    /// [default: 0, or what a picture shows]
+    #[arg(long, value_parser = args::finite, value_name = "SECONDS", allow_negative_numbers = true)]
+    time: Option<f64>,
     /// Camera: east,height,south,heading,pitch[,field of view] in metres and degrees.
     #[arg(long, value_name = "VALUES", allow_hyphen_values = true)]
     camera: Option<String>,
@@ -145,7 +146,7 @@ impl RenderArgs {
             size: Some([1280, 720]),
             region: None,
             projection: None,
-            time: 0.0,
+            time: None,
             camera: None,
             frames: None,
             fps: 24.0,
@@ -173,10 +174,13 @@ impl RenderArgs {
     /// Frames from the first to the last of the sky's own film, if none were named.
     pub(super) fn fit_frames(&mut self) -> Result<()> {
         if self.frames.is_none() {
-            let animation = files::open(&self.scene)?.preset.animation;
-            let frames = animation.duration_secs / animation.speed.max(1e-3) * self.fps;
-            let last = (frames.round() - 1.0).max(0.0);
-            self.frames = Some(format!("0-{last:.0}"));
+            let sky = files::open(&self.scene)?;
+            let begin_secs = self.time.unwrap_or(sky.time_secs);
+            let Some(last) = sky.preset.animation.last_frame(begin_secs, self.fps) else {
+                let said = "the sky's time stands still or has ended, so its film has no length; give --frames";
+                return Err(Usage(said.to_owned()).into());
+            };
+            self.frames = Some(format!("0-{last}"));
         }
         Ok(())
     }
@@ -184,6 +188,11 @@ impl RenderArgs {
     /// Where pictures go.
     pub(super) fn output(&self) -> &Path {
         &self.output
+    }
+
+    /// Whether lines of JSON are printed.
+    pub(super) fn is_json(&self) -> bool {
+        self.json
     }
 
     /// Frames per second.
@@ -270,13 +279,13 @@ impl Job {
         // `--size` is the size of the file, unless `--set` says otherwise.
         quality.resolution_scale = 1.0;
         let mut preset = sky.preset;
-        edit::apply(&args.edits.sets, &mut preset.scene, &mut quality)?;
-        // What is said here holds at all times.
-        let set: Vec<&str> = args.edits.sets.iter().filter_map(|set| Some(edit::split(set).ok()?.0)).collect();
-        preset.animation.tracks.retain(|track| !set.contains(&track.key.as_str()));
+        preset.set_all(&args.edits.sets, &mut quality)?;
         if let Some(camera) = &args.camera {
             args::set_camera(&mut preset.scene, camera)?;
-            preset.animation.tracks.retain(|track| !track.key.starts_with("camera."));
+            preset.animation.override_by(["camera"]);
+        }
+        if args.projection.is_some() {
+            preset.animation.override_by(["camera.projection"]);
         }
         match args.projection {
             None => {}
@@ -321,16 +330,26 @@ impl Job {
             return Err(Usage("--layers is for the realtime march; choose --quality high".to_owned()).into());
         }
         let forced = args::forced(&args.force)?;
-        let pictures = pictures(args, preset.animation.speed)?;
+        let time_secs = args.time.unwrap_or(sky.time_secs);
+        let pictures = pictures(args, (time_secs, preset.animation.speed), cube)?;
+        let (scene, output) = (&preset.scene, content.output());
+        let whole = Frame { scene, quality: &quality, size, time_secs, output, window: None };
+        if (cube.is_some() || args.region.is_some()) && FramePlan::new(&whole).sunshafts.is_some() {
+            eprintln!("streaks of light need the whole picture: a region and the faces of a cube are without them");
+        }
         Ok(Self { preset, quality, content, size, cube, region: args.region, goal, forced, pictures })
     }
 }
 
 /// The files to write, with their times; those of a sequence that exist are left out.
-fn pictures(args: &RenderArgs, speed: f64) -> Result<Vec<(PathBuf, f64)>> {
+fn pictures(
+    args: &RenderArgs,
+    (begin_secs, speed): (f64, f64),
+    cube: Option<CubeLayout>,
+) -> Result<Vec<(PathBuf, f64)>> {
     let pattern = FramePattern::parse(&args.output)?;
     let pictures = match (&args.frames, pattern.is_sequence()) {
-        (None, false) => vec![(args.output.clone(), args.time)],
+        (None, false) => vec![(args.output.clone(), begin_secs)],
         (None, true) => return Err(Usage("-o has `#` for a frame number, but --frames is missing".to_owned()).into()),
         (Some(_), false) => {
             return Err(Usage("--frames needs `####` in the name of -o, such as sky.####.exr".to_owned()).into());
@@ -342,8 +361,8 @@ fn pictures(args: &RenderArgs, speed: f64) -> Result<Vec<(PathBuf, f64)>> {
             let frames = parse_frame_range(range).with_context(|| format!("--frames {range:?} cannot be used"))?;
             let all = frames
                 .into_iter()
-                .map(|frame| (pattern.path_of(frame), args.time + speed * f64::from(frame) / args.fps));
-            all.filter(|(path, _)| args.overwrite || !is_there(path)).collect()
+                .map(|frame| (pattern.path_of(frame), begin_secs + speed * f64::from(frame) / args.fps));
+            all.filter(|(path, _)| args.overwrite || !is_there(path, cube)).collect()
         }
     };
     for (path, _) in &pictures {
@@ -352,8 +371,8 @@ fn pictures(args: &RenderArgs, speed: f64) -> Result<Vec<(PathBuf, f64)>> {
     Ok(pictures)
 }
 
-fn is_there(path: &Path) -> bool {
-    let is_there = path.exists();
+fn is_there(path: &Path, cube: Option<CubeLayout>) -> bool {
+    let is_there = files_of_still(path, cube).iter().all(|path| path.exists());
     if is_there {
         eprintln!("{} exists and is kept (--overwrite renders it again)", path.display());
     }
@@ -361,7 +380,7 @@ fn is_there(path: &Path) -> bool {
 }
 
 /// Refuses what can never be written before minutes are spent on it.
-fn check_target(path: &Path) -> Result<(), ExportError> {
+pub(super) fn check_target(path: &Path) -> Result<(), ExportError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
         return Err(ExportError::FolderMissing { path: path.to_owned(), folder: folder.to_owned() });
@@ -391,7 +410,7 @@ pub(super) fn run(args: &RenderArgs) -> Result<()> {
             programs.keep(&gpu);
         }
         let seconds = begun.elapsed().as_secs_f64();
-        bar.suspend(|| report((args, job.size), path, *time_secs, seconds))?;
+        bar.suspend(|| report((args, &job), path, *time_secs, seconds))?;
         if interrupt::is_asked() {
             bar.finish_and_clear();
             return Err(Interrupted(format!("{} is the last picture, with what was finished", path.display())).into());
@@ -423,14 +442,16 @@ fn write_picture(
             !interrupt::is_asked()
         };
         let (size, cube, region) = (job.size, job.cube, job.region);
-        let file = StillFile { path, content, size, cube, region, largest_whole: LARGEST_WHOLE, about };
+        let file = StillFile { path, content, size, cube, region, largest_whole: LARGEST_WHOLE_PX, about };
         return match file.render(renderer, &mut proceed) {
             Ok(true) => Ok(()),
             Ok(false) => Err(not_finished()),
             Err(StillError::Render(error)) => Err(anyhow::Error::new(error).context(failed())),
             Err(error @ (StillError::CubeOfLayers | StillError::TooLarge)) => Err(Usage(error.to_string()).into()),
             Err(StillError::File(error)) => {
-                if matches!(error, FileError::Export(ExportError::NonFinite { .. })) {
+                // Of a part, another one may be at fault; a large whole is more than the device holds.
+                let is_whole = job.cube.is_none() && job.region.is_none() && !file.is_large();
+                if is_whole && matches!(error, FileError::Export(ExportError::NonFinite { .. })) {
                     // The pass that wrote it says more than the pixel.
                     watch(renderer, &frame).with_context(|| format!("{} was not written", path.display()))?;
                 }
@@ -477,10 +498,15 @@ fn progress(count: usize) -> ProgressBar {
     bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-fn report((args, [width, height]): (&RenderArgs, [u32; 2]), path: &Path, time_secs: f64, seconds: f64) -> Result<()> {
+fn report((args, job): (&RenderArgs, &Job), path: &Path, time_secs: f64, seconds: f64) -> Result<()> {
+    let [width, height] = match (job.cube, job.region) {
+        (Some(CubeLayout::Cross), _) => [4 * job.size[0], 3 * job.size[1]],
+        (_, Some([_, part])) => part,
+        _ => job.size,
+    };
     if args.json {
         let line = json!({
-            "path": path.display().to_string(),
+            "path": files_of_still(path, job.cube)[0].display().to_string(),
             "width": width,
             "height": height,
             "time_secs": time_secs,
@@ -488,5 +514,6 @@ fn report((args, [width, height]): (&RenderArgs, [u32; 2]), path: &Path, time_se
         });
         return print(&format!("{line}\n"));
     }
-    print(&format!("{} {width}x{height}, {seconds:.1} s\n", path.display()))
+    let paths = files_of_still(path, job.cube);
+    paths.iter().try_for_each(|path| print(&format!("{} {width}x{height}, {seconds:.1} s\n", path.display())))
 }

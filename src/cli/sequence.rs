@@ -39,9 +39,14 @@ pub(super) fn run(args: &SequenceArgs) -> Result<()> {
                     the frames elsewhere";
         return Err(Usage(said.to_owned()).into());
     }
+    render::check_target(video)?;
     let frames = render.files()?;
     render::run(&render)?;
     film(&frames, render.fps(), video).with_context(|| format!("{} could not be made", video.display()))?;
+    if render.is_json() {
+        let line = serde_json::json!({ "path": video.display().to_string(), "frames": frames.len() });
+        return super::print(&format!("{line}\n"));
+    }
     super::print(&format!("{} {} frames\n", video.display(), frames.len()))
 }
 
@@ -60,15 +65,16 @@ fn film(frames: &[PathBuf], fps: f64, video: &Path) -> Result<()> {
     }
     list.flush()?;
     let folder = video.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let beside = tempfile::Builder::new().suffix(&format!(".{}", ending(video))).tempfile_in(folder)?.into_temp_path();
+    let beside = tempfile::tempdir_in(folder)?;
+    let film = beside.path().join(format!("film.{}", ending(video)));
     let output = Command::new("ffmpeg")
         .args(["-y", "-loglevel", "error", "-f", "concat", "-safe", "0", "-i"])
         .arg(list.path())
         .args(["-r", &fps.to_string(), "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-pix_fmt", "yuv420p"])
-        .arg(&beside)
+        .arg(&film)
         .stdin(Stdio::null())
         .output()?;
     anyhow::ensure!(output.status.success(), "ffmpeg said: {}", String::from_utf8_lossy(&output.stderr).trim());
-    beside.persist(video)?;
-    Ok(())
+    // Nothing of an earlier film is lost before this one is whole.
+    Ok(std::fs::rename(&film, video)?)
 }

@@ -27,6 +27,8 @@ pub const PRESET: &str = "nephoscope:preset";
 pub const PRESET_VERSION: &str = "nephoscope:presetVersion";
 /// The quality settings of the render, RON text.
 pub const QUALITY: &str = "nephoscope:quality";
+/// What a picture's time is called behind [`PREFIX`], in seconds since the scene began.
+pub const TIME_SECS: &str = "timeSecs";
 /// Candela per square metre that a channel value of 1 stands for.
 pub const LUMINANCE_SCALE: &str = "nephoscope:candelaPerSquareMetrePerUnit";
 /// Prefix of an embedded file's bytes; its name follows.

@@ -8,7 +8,7 @@ use ::exr::meta::MetaData;
 use ::exr::meta::header::Header;
 use ::exr::prelude::{AttributeValue, Text};
 
-use super::exr::{EmbeddedFile, FILE_PREFIX, PRESET, PRESET_VERSION, QUALITY, SHA256_PREFIX};
+use super::exr::{EmbeddedFile, FILE_PREFIX, PREFIX, PRESET, PRESET_VERSION, QUALITY, SHA256_PREFIX, TIME_SECS};
 
 use super::{ExportError, png};
 use crate::images::map::{EXR_MAGIC, PNG_MAGIC, exr_failure};
@@ -23,6 +23,8 @@ pub struct EmbeddedPreset {
     pub preset_version: u32,
     /// The quality settings, if they were stored.
     pub quality_ron: Option<String>,
+    /// The time that the picture shows, in seconds since the scene began, as it was stored.
+    pub time_secs: Option<String>,
     /// User files the preset names, sorted by name. Those that were too large to embed have no bytes.
     pub files: Vec<EmbeddedFile>,
 }
@@ -87,6 +89,7 @@ fn preset_of_header(path: &Path, header: &Header) -> Result<EmbeddedPreset, Expo
         preset_ron,
         preset_version: version.ok_or_else(|| no_version(path))?,
         quality_ron: string(QUALITY)?,
+        time_secs: string(&format!("{PREFIX}{TIME_SECS}"))?,
         files,
     })
 }
@@ -103,6 +106,7 @@ fn preset_of_png(path: &Path, bytes: &[u8]) -> Result<EmbeddedPreset, ExportErro
         preset_ron,
         preset_version: version.ok_or_else(|| no_version(path))?,
         quality_ron: take(QUALITY),
+        time_secs: take(&format!("{PREFIX}{TIME_SECS}")),
         files: Vec::new(),
     })
 }

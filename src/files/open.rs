@@ -35,6 +35,8 @@ pub struct Sky {
     pub quality: Option<Quality>,
     /// Where it came from.
     pub origin: Origin,
+    /// The time that a picture shows, in seconds since the scene began; 0 for everything else.
+    pub time_secs: f64,
 }
 
 /// Opens a sky.
@@ -61,7 +63,7 @@ pub fn open(source: &Path) -> Result<Sky, FileError> {
 
 fn sky(preset: Preset, quality: Option<Quality>, origin: Origin) -> Sky {
     let quality = quality.or_else(|| preset.quality.map(Quality::level));
-    Sky { preset, quality, origin }
+    Sky { preset, quality, origin, time_secs: 0.0 }
 }
 
 fn open_picture(path: &Path) -> Result<Sky, FileError> {
@@ -75,7 +77,9 @@ fn open_picture(path: &Path) -> Result<Sky, FileError> {
     for name in files_of(&mut preset.scene) {
         *name = map_of_picture(path, name, &embedded.files)?.display().to_string();
     }
-    Ok(sky(preset, quality, Origin::Picture(path.to_owned())))
+    let time_secs = embedded.time_secs.and_then(|text| text.parse().ok()).filter(|time: &f64| time.is_finite());
+    let time_secs = time_secs.unwrap_or(0.0);
+    Ok(Sky { time_secs, ..sky(preset, quality, Origin::Picture(path.to_owned())) })
 }
 
 /// A map that a picture names: from inside it, or the file of that name beside it.

@@ -5,8 +5,9 @@ use std::path::Path;
 use glam::{Mat4, Vec3, Vec4};
 
 use super::FileError;
+use crate::export::ExportError;
 use crate::export::exr::{EmbeddedFile, ExrDepth, ExrLayers, ExrMetadata, ExrOptions, PRESET, QUALITY};
-use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME, write_exr_with_layers};
+use crate::export::exr::{PREFIX, PRESET_VERSION as VERSION_NAME, TIME_SECS, write_exr_with_layers};
 use crate::export::png::{PngPixels, write_png};
 use crate::images::{Crop, FloatImage};
 use crate::render::LinearImage;
@@ -51,7 +52,7 @@ pub(super) fn save_png_pixels(
         (PRESET.to_owned(), preset.to_ron()),
         (VERSION_NAME.to_owned(), PRESET_VERSION.to_string()),
         (QUALITY.to_owned(), quality_to_ron(about.quality)),
-        (format!("{PREFIX}timeSecs"), about.time_secs.to_string()),
+        (format!("{PREFIX}{TIME_SECS}"), about.time_secs.to_string()),
     ];
     Ok(write_png(path, size, pixels, &text)?)
 }
@@ -106,24 +107,33 @@ pub(super) fn metadata(
         candela_per_unit,
         world_to_camera: camera.map(|camera| camera[0].to_cols_array_2d()),
         world_to_ndc: camera.map(|camera| camera[1].to_cols_array_2d()),
-        extra: vec![("timeSecs".to_owned(), about.time_secs.to_string())],
+        extra: vec![(TIME_SECS.to_owned(), about.time_secs.to_string())],
         files,
         ..ExrMetadata::default()
     }
 }
 
-/// Writes values of a map, a noise or a table: as EXR with all bits, or as PNG, red, green and blue of 0 to 1 in 16 bits.
+/// Writes values of a map, a noise or a table: as EXR with all bits, or as PNG with 16 bits for 0 to 1.
 ///
 /// # Errors
-/// As [`save_exr`] and [`save_png`].
+/// As [`save_exr`] and [`save_png`]; and if values do not lie within 0 to 1, for a PNG.
 pub fn save_table(path: &Path, table: Table, about: &About<'_>) -> Result<(), FileError> {
     let is_png = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"));
     if is_png {
+        let all = || table.rgba.iter().flatten().copied();
+        let (low, high) = (all().fold(f32::INFINITY, f32::min), all().fold(f32::NEG_INFINITY, f32::max));
+        if low < 0.0 || high > 1.0 + 1e-3 {
+            let reason = format!("its values go from {low} to {high}, and a PNG holds 0 to 1; write an .exr");
+            return Err(ExportError::BadImage { path: path.to_owned(), reason }.into());
+        }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to 0 to 65535")]
         let word = |value: f32| (value.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16;
+        let is_opaque = table.rgba.iter().all(|texel| texel[3] == 1.0);
+        let channels = if is_opaque { 3 } else { 4 };
         let words: Vec<u16> =
-            table.rgba.iter().flat_map(|[red, green, blue, _]| [word(*red), word(*green), word(*blue)]).collect();
-        return save_png_pixels(path, table.size, PngPixels::Rgb16(&words), about);
+            table.rgba.iter().flat_map(|texel| texel[..channels].iter().map(|value| word(*value))).collect();
+        let pixels = if is_opaque { PngPixels::Rgb16(&words) } else { PngPixels::Rgba16(&words) };
+        return save_png_pixels(path, table.size, pixels, about);
     }
     let distance_m = vec![0.0; table.rgba.len()];
     let image = LinearImage { size: table.size, rgba: table.rgba, distance_m, candela_per_unit: 1.0 };

@@ -13,8 +13,6 @@ use crate::plan::{FramePlan, Lighting};
 use crate::render::{LinearImage, RenderError, Renderer};
 use crate::scene::{CUBE_FACES, Camera, Frame, Output, Preset, Scene, Window};
 
-/// What is rendered whole takes some 120 bytes for each pixel.
-pub const LARGEST_WHOLE: u64 = 4096 * 2176;
 /// Rows of the jitter's pattern: bands are multiples of it.
 const BAND_STEP: u32 = 64;
 
@@ -75,8 +73,8 @@ pub enum StillError {
     File(#[from] FileError),
     /// It is too large to be rendered whole, and cannot be rendered in bands.
     #[error(
-        "a picture of this size is rendered in bands, which neither layers nor streaks of light can be: \
-         make it smaller, leave the layers out, or set sunshafts.strength to 0"
+        "a picture of this size has to be rendered in bands, which neither layers nor regions, faces of cubes nor streaks of \
+         light can be: make it smaller, leave those out, or set sunshafts.strength to 0"
     )]
     TooLarge,
     /// The content does not go with a cube map.
@@ -105,7 +103,7 @@ pub struct StillFile<'a> {
     pub cube: Option<CubeLayout>,
     /// The part of the picture that is rendered, in pixels: offset from the top left, then width and height. `None` for all.
     pub region: Option<[[u32; 2]; 2]>,
-    /// Pictures of more pixels are rendered in bands; [`LARGEST_WHOLE`] suits most machines.
+    /// Pictures of more pixels are rendered in bands; [`LARGEST_WHOLE_PX`](crate::scene::LARGEST_WHOLE_PX) suits most machines.
     pub largest_whole: u64,
     /// What it shows, and how it is computed.
     pub about: About<'a>,
@@ -114,10 +112,7 @@ pub struct StillFile<'a> {
 impl StillFile<'_> {
     /// The files that it becomes.
     pub fn paths(&self) -> Vec<PathBuf> {
-        match self.cube {
-            Some(CubeLayout::Faces) => CUBE_FACES.iter().map(|face| face_path(self.path, face.name)).collect(),
-            _ => vec![self.path.to_owned()],
-        }
+        files_of_still(self.path, self.cube)
     }
 
     /// Renders and writes it. `proceed` hears the share that is done, and gives it up by `false`; then nothing is written, but
@@ -131,7 +126,7 @@ impl StillFile<'_> {
                 let scene = &self.about.preset.scene;
                 let camera = Some(&scene.camera);
                 let part = self.region.map(|[offset, size]| (Window { offset, whole: self.size }, size));
-                if part.is_none() && self.is_large() && !self.is_in_bands_possible(scene) {
+                if self.is_large() && (part.is_some() || !self.is_in_bands_possible(scene)) {
                     return Err(StillError::TooLarge);
                 }
                 match self.content {
@@ -149,9 +144,11 @@ impl StillFile<'_> {
                 }
             }
             Some(_) if matches!(self.content, Content::Layers(_)) => return Err(StillError::CubeOfLayers),
+            Some(_) if self.is_large() => return Err(StillError::TooLarge),
             Some(CubeLayout::Faces) => {
                 for (index, path) in self.paths().iter().enumerate() {
-                    let preset = Preset { scene: self.face(index), ..self.about.preset.clone() };
+                    let mut preset = Preset { scene: self.face(index), ..self.about.preset.clone() };
+                    preset.animation.override_by(["camera", "sunshafts.strength"]);
                     let mut part = |share: f32| proceed((index as f32 + share) / CUBE_FACES.len() as f32);
                     let Some(taken) = self.take(renderer, (&preset.scene, None), &mut part)? else { return Ok(false) };
                     let about = About { preset: &preset, ..self.about };
@@ -175,9 +172,11 @@ impl StillFile<'_> {
         Ok(true)
     }
 
-    /// Whether it takes more memory than most machines have to hold what each pixel needs while it is rendered.
-    fn is_large(&self) -> bool {
-        u64::from(self.size[0]) * u64::from(self.size[1]) > self.largest_whole
+    /// Whether it takes more memory than most machines have to hold what each pixel of it, or of its region, needs while it
+    /// is rendered.
+    pub fn is_large(&self) -> bool {
+        let [width, height] = self.region.map_or(self.size, |[_, part]| part);
+        u64::from(width) * u64::from(height) > self.largest_whole
     }
 
     /// Whether pixels do not depend on others that may lie in another band.
@@ -303,8 +302,7 @@ impl StillFile<'_> {
                 save_png_pixels(path, size, PngPixels::Rgb16(&flat), about)?;
             }
             (Taken::Light(image, _), Content::Radiance) => {
-                let rgb: Vec<[f32; 3]> = image.rgba.iter().map(|[r, g, b, _]| [*r, *g, *b]).collect();
-                write_hdr(path, image.size, &rgb)?;
+                write_hdr(path, image.size, &image.rgba)?;
             }
             (
                 Taken::Light(image, layers),
@@ -316,6 +314,14 @@ impl StillFile<'_> {
             (Taken::Light(..), Content::Display | Content::Display16) => {}
         }
         Ok(())
+    }
+}
+
+/// The files that a still becomes.
+pub fn files_of_still(path: &Path, cube: Option<CubeLayout>) -> Vec<PathBuf> {
+    match cube {
+        Some(CubeLayout::Faces) => CUBE_FACES.iter().map(|face| face_path(path, face.name)).collect(),
+        _ => vec![path.to_owned()],
     }
 }
 

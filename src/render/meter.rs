@@ -47,7 +47,8 @@ impl LightHistogram {
     /// The exposure that shows the mean of all stops, but for the darkest and brightest few pixels, as middle grey; `None` for a
     /// picture without light.
     pub fn exposure_ev(&self) -> Option<f64> {
-        let total = self.total() as f64;
+        // The first bin is black.
+        let total = self.bins.iter().skip(1).map(|count| f64::from(*count)).sum::<f64>();
         let (low, high) = (IGNORED[0] * total, (1.0 - IGNORED[1]) * total);
         let (mut before, mut weight, mut sum) = (0.0, 0.0, 0.0);
         for (bin, count) in self.bins.iter().enumerate().skip(1) {

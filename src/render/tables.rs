@@ -9,7 +9,8 @@ use crate::scene::Frame;
 choices! {
     /// A map, a noise or a table.
     pub enum TableKind {
-        /// Coverage, and the weights of stratus, stratocumulus and cumulus; or whatever the map's image holds.
+        /// Amounts of cumulus, stratus and stratocumulus, and in alpha how they vary from place to place; or coverage, height and
+        /// altitude of a weather texture.
         WeatherMap ("weather-map"),
         /// The large noise, in slices from south to north.
         ShapeNoise ("shape-noise"),

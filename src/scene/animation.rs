@@ -22,6 +22,8 @@ pub const DURATION_RANGE_SECS: RangeInclusive<f64> = 0.1..=10_000_000.0;
 pub const SPEED_RANGE: RangeInclusive<f64> = 0.0..=10_000.0;
 /// Most keys of one parameter.
 const MAX_KEYS: usize = 10_000;
+/// While a parameter is moved as time plays, keys are no nearer than this, in seconds of the clock.
+const RECORDED_SECS: f64 = 0.05;
 /// Keys nearer than this are one, in seconds.
 const SAME_TIME_SECS: f64 = 1e-3;
 
@@ -84,6 +86,13 @@ impl Default for Animation {
     }
 }
 
+/// Whether a parameter can have keys: files and what other parameters depend on cannot.
+pub fn can_move(entry: &edit::Entry) -> bool {
+    !entry.is_file()
+        && entry.key != "domain.kind"
+        && !(entry.key.starts_with("layers.") && entry.key.ends_with(".model"))
+}
+
 impl Track {
     /// The last key that is not after `time_secs`; `None` before the first.
     fn index_at(&self, time_secs: f64) -> Option<usize> {
@@ -95,10 +104,15 @@ impl Track {
         self.keys.iter().position(|key| (key.time_secs - time_secs).abs() < SAME_TIME_SECS)
     }
 
-    /// Puts a value there, in place of one that is there already; its ease is that of the key before.
-    pub fn set(&mut self, time_secs: f64, value: String) {
-        if let Some(index) = self.key_at(time_secs) {
+    /// Puts a value there, in place of one that is there already or no farther than `near_secs`; its ease is that of the key
+    /// before. A track that is full stays as it is.
+    fn set(&mut self, time_secs: f64, value: String, near_secs: f64) {
+        let near = |key: &Keyframe| (key.time_secs - time_secs).abs() < near_secs.max(SAME_TIME_SECS);
+        if let Some(index) = self.key_at(time_secs).or_else(|| self.keys.iter().position(near)) {
             self.keys[index].value = value;
+            return;
+        }
+        if self.keys.len() >= MAX_KEYS {
             return;
         }
         let before = self.index_at(time_secs);
@@ -132,11 +146,29 @@ impl Animation {
         }
     }
 
+    /// The last frame of the film that begins at a time; `None` if time stands still or the film is over then.
+    pub fn last_frame(&self, begin_secs: f64, fps: f64) -> Option<u32> {
+        let frames = ((self.duration_secs - begin_secs) / self.speed * fps).round();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked")]
+        (1.0..=1e6).contains(&frames).then(|| frames as u32 - 1)
+    }
+
     /// Gives every parameter that has keys its value at that time.
     pub fn play(&self, scene: &mut Scene, time_secs: f64) {
         if self.is_moving() {
             scene.visit(&mut Play { tracks: &self.tracks, time_secs, prefix: String::new() });
-            scene.mend();
+            self.keep_layers_upright(scene);
+        }
+    }
+
+    /// Keeps tops above bases by what has keys alone: what has none must not depend on the times that were shown.
+    fn keep_layers_upright(&self, scene: &mut Scene) {
+        for (index, layer) in scene.layers.iter_mut().enumerate().filter(|(_, layer)| layer.top_m < layer.base_m) {
+            if self.track(&format!("layers.{index}.top_m")).is_some() {
+                layer.top_m = layer.base_m;
+            } else {
+                layer.base_m = layer.top_m;
+            }
         }
     }
 
@@ -152,24 +184,54 @@ impl Animation {
         }
         let before = edit::keys(&played);
         let wanted = edit::keys(scene).into_iter().zip(before).filter(|(now, before)| now.value != before.value);
+        let near_secs = RECORDED_SECS * self.speed;
+        let mut is_late = false;
         for (now, _) in wanted {
             if let Some(track) = self.tracks.iter_mut().find(|track| track.key == now.key) {
-                track.set(time_secs, now.value);
+                track.set(time_secs, now.value, near_secs);
+                is_late = true;
             }
+        }
+        if is_late {
+            self.hold(time_secs);
         }
     }
 
-    /// Puts a key at that time for what a parameter is now; nothing if there is no such parameter, or it is a file.
+    /// Lets the film be long enough for a key.
+    fn hold(&mut self, time_secs: f64) {
+        self.duration_secs = self.duration_secs.max(time_secs).min(*DURATION_RANGE_SECS.end());
+    }
+
+    /// Lets go of tracks whose parameter the sky has no longer.
+    pub fn keep_only_what_is_in(&mut self, scene: &Scene) {
+        if self.is_moving() {
+            let known = edit::keys(scene);
+            self.tracks.retain(|track| known.iter().any(|entry| entry.key == track.key));
+        }
+    }
+
+    /// Lets go of what says otherwise than values that were given for all times: the tracks of these keys, or of what lies in
+    /// these groups.
+    pub fn override_by<'k>(&mut self, keys: impl IntoIterator<Item = &'k str>) {
+        for key in keys {
+            let is_below = |track: &Track| track.key.strip_prefix(key).is_some_and(|rest| rest.starts_with('.'));
+            self.tracks.retain(|track| track.key != key && !is_below(track));
+        }
+    }
+
+    /// Puts a key at that time for what a parameter is now; nothing if there is no such
+    /// parameter, or it cannot change.
     pub fn set_key(&mut self, scene: &Scene, key: &str, time_secs: f64) {
-        let found = edit::keys(scene).into_iter().find(|entry| entry.key == key && !entry.is_file());
+        let found = edit::keys(scene).into_iter().find(|entry| entry.key == key && can_move(entry));
         let Some(entry) = found else { return };
         match self.tracks.iter_mut().find(|track| track.key == key) {
-            Some(track) => track.set(time_secs, entry.value),
+            Some(track) => track.set(time_secs, entry.value, 0.0),
             None => {
                 let first = Keyframe { time_secs, value: entry.value, ease: Ease::Smooth };
                 self.tracks.push(Track { key: key.to_owned(), keys: vec![first] });
             }
         }
+        self.hold(time_secs);
     }
 
     /// Takes a key away, and the track with its last one.
@@ -195,8 +257,11 @@ impl Animation {
     }
 
     /// Follows a list of layers from which one was taken, or into which one was put, so that the tracks stay with theirs.
-    pub fn follow<T: PartialEq>(&mut self, list: &str, before: &[T], after: &[T]) {
-        let place = before.iter().zip(after).take_while(|(old, new)| old == new).count();
+    /// `edited` is the key of the edit: that of a layer that was taken ends in its index, which twins do not tell.
+    pub fn follow<T: PartialEq>(&mut self, edited: &str, list: &str, before: &[T], after: &[T]) {
+        let named = edited.strip_prefix(list).and_then(|rest| rest.strip_prefix('.')?.parse::<usize>().ok());
+        let differs = before.iter().zip(after).take_while(|(old, new)| old == new).count();
+        let place = named.filter(|_| after.len() < before.len()).unwrap_or(differs);
         let shift = match after.len().checked_signed_diff(before.len()) {
             Some(shift @ (-1 | 1)) => shift,
             _ => return,
@@ -219,7 +284,7 @@ impl Animation {
     }
 
     /// The sun's way over the sky on its day at its place: from dawn to dusk in `film_secs` seconds of film at this speed of
-    /// time. `None` where it neither rises nor sets.
+    /// time. `None` where it does not come up.
     #[must_use = "where there is no day, nothing was done"]
     pub fn day(&self, sun: &Sun, film_secs: f64, speed: f64) -> Option<Self> {
         let [dawn, dusk] = sun.daylight()?;
@@ -296,6 +361,9 @@ impl Track {
         }
         match edit::keys(scene).iter().find(|entry| entry.key == *name) {
             Some(entry) if entry.is_file() => return Err(format!("{name} is a file, which cannot have keys")),
+            Some(entry) if !can_move(entry) => {
+                return Err(format!("{name} decides what else there is, and cannot have keys"));
+            }
             Some(_) => {}
             None => {
                 // Says what is near, or that it is a group.

@@ -31,6 +31,9 @@ pub struct Frame<'a> {
     pub window: Option<Window>,
 }
 
+/// Pictures of more pixels are rendered in bands: what is rendered together takes some 120 bytes for each.
+pub const LARGEST_WHOLE_PX: u64 = 4096 * 2176;
+
 /// The place of a part in a larger picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {

@@ -25,9 +25,9 @@ pub mod reference_docs;
 mod sun_position;
 mod weather;
 
-pub use animation::{Animation, DURATION_RANGE_SECS, Ease, Keyframe, SPEED_RANGE, Track};
+pub use animation::{Animation, DURATION_RANGE_SECS, Ease, Keyframe, SPEED_RANGE, Track, can_move};
 pub use cube::{CUBE_FACES, CubeFace};
-pub use frame::{Frame, Output, Window};
+pub use frame::{Frame, LARGEST_WHOLE_PX, Output, Window};
 pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
 pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};
 pub use place::{Camera, Display, Domain, DomainKind, FALSE_COLOURS, FieldOfViewAxis, Ground, Projection, ToneMap};

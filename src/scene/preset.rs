@@ -17,6 +17,7 @@ use self::check::{Finding, What};
 use self::locate::{Kind, Node};
 pub(super) use self::write::quoted;
 use super::bounds::Fault;
+use super::edit::{self, EditError};
 use super::nearest::did_you_mean;
 use super::param::{Choice, Params};
 use super::{Animation, Camera, Quality, QualityLevel, Scene};
@@ -193,6 +194,17 @@ impl Preset {
         }
         preset.play(0.0);
         Ok(preset)
+    }
+
+    /// Applies `key=value` assignments, as [`edit::apply`] does; they hold at all times, whatever keys there were.
+    ///
+    /// # Errors
+    /// As [`edit::apply`].
+    pub fn set_all(&mut self, assignments: &[String], quality: &mut Quality) -> Result<(), EditError> {
+        edit::apply(assignments, &mut self.scene, quality)?;
+        self.animation.override_by(assignments.iter().filter_map(|set| Some(edit::split(set).ok()?.0)));
+        self.animation.keep_only_what_is_in(&self.scene);
+        Ok(())
     }
 
     /// Gives everything that has keys its value at that time.

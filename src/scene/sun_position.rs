@@ -105,10 +105,18 @@ impl Sun {
         Some(high.min(24.0 * 60.0) / 60.0)
     }
 
-    /// The hours of dawn and dusk on the sun's day at its place; `None` where it does not rise through twilight and sink again.
+    /// From dawn to dusk on the sun's day at its place, in hours: by civil twilight where there is one, else from sunrise to
+    /// sunset, else all day; `None` where the sun stays deeper than twilight.
     pub fn daylight(&self) -> Option<[f32; 2]> {
-        let hours = [self.hour_of(Moment::MorningTwilight)?, self.hour_of(Moment::EveningTwilight)?];
-        (hours[0] < hours[1]).then_some(hours)
+        let between = |begin, end| {
+            let hours = [self.hour_of(begin)?, self.hour_of(end)?];
+            (hours[0] < hours[1]).then_some(hours)
+        };
+        let noon = Self { placement: SunPlacement::Hour, hour_h: self.hour_of(Moment::Noon)?, ..self.clone() };
+        let is_day = computed(&noon).is_some_and(|(elevation, _)| elevation > -6.0);
+        between(Moment::MorningTwilight, Moment::EveningTwilight)
+            .or_else(|| between(Moment::Sunrise, Moment::Sunset))
+            .or_else(|| is_day.then_some([0.0, 24.0]))
     }
 
     /// Puts day and hour to those of a clock, in seconds since the beginning of 1970 (universal time).

@@ -31,7 +31,7 @@ pub(super) fn note_pointed(ui: &Ui, key: &str) {
 
 /// Whether a key names a parameter of the sky, rather than a section or a setting of quality.
 fn can_move(key: &str, scene: &Scene) -> bool {
-    crate::scene::edit::keys(scene).iter().any(|entry| entry.key == key && !entry.is_file())
+    crate::scene::edit::keys(scene).iter().any(|entry| entry.key == key && crate::scene::can_move(entry))
 }
 
 /// Whether Backspace was pressed and nobody is typing.

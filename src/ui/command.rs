@@ -205,7 +205,8 @@ impl Command {
             Self::Save | Self::SaveAs => state.dialog = Some(Dialog::save_as(document, &state.library)),
             Self::Screenshot => ask(Request::Screenshot),
             Self::Export => {
-                state.dialog = Some(Dialog::Export(ExportForm::for_document(document, state.viewport.region)));
+                let viewport = (state.viewport.region, state.viewport.size_px(ui.ctx().pixels_per_point()));
+                state.dialog = Some(Dialog::Export(ExportForm::for_document(document, viewport)));
             }
             Self::Quit => ask(Request::Quit),
             Self::Undo => actions.push(Action::Undo),
@@ -234,7 +235,7 @@ impl Command {
             Self::Presets => state.show_presets = Some(!state.presets_visible(ui.ctx().content_rect().width())),
             Self::Panel => state.show_panel = !state.show_panel,
             Self::Histogram => state.histogram.is_open = !state.histogram.is_open,
-            Self::FalseColour => actions.push(super::histogram::toggled(document)),
+            Self::FalseColour => actions.push(state.histogram.toggled(document)),
             Self::KeepCamera => match super::cameras::kept_with_this(document) {
                 Some(action) => {
                     actions.push(action);
@@ -246,7 +247,9 @@ impl Command {
                 let viewport = &mut state.viewport;
                 if viewport.region.take().is_none() && !std::mem::take(&mut viewport.is_choosing) {
                     viewport.is_choosing = true;
-                    state.toasts.info("Drag a rectangle over the picture; Ctrl+B again draws all of it");
+                    state.toasts.info(
+                        "Drag a rectangle over the picture; Ctrl+B again draws all of it. Streaks of light need the whole picture",
+                    );
                 }
             }
             Self::Guides => state.viewport.has_guides = !state.viewport.has_guides,

@@ -8,8 +8,8 @@ use super::dialogs::{Fate, confirm, file_name, path_field};
 use super::row;
 use crate::app::action::{Action, Browse, Export, Request, Sequence, Shape, Still};
 use crate::app::document::Document;
-use crate::scene::QualityLevel;
 use crate::scene::param::Choice as _;
+use crate::scene::{Animation, Camera, LARGEST_WHOLE_PX, QualityLevel};
 
 /// The form for a still, as typed.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,20 +30,18 @@ pub struct ExportForm {
     pub path: String,
     /// The region of the viewport, and whether only that is rendered.
     pub region: Option<([f32; 4], bool)>,
-    /// The frame at which the document's animation ends.
-    pub last_frame: u32,
+    /// The document's film.
+    film: Animation,
+    /// The camera, and the size of the viewport, in which the region was framed.
+    framed: (Camera, [u32; 2]),
 }
 
 impl ExportForm {
     /// A full-HD EXR named after the document, at the level that its preset names, of the viewport's region if it has one.
-    pub fn for_document(document: &Document, region: Option<[f32; 4]>) -> Self {
+    pub fn for_document(document: &Document, (region, viewport): (Option<[f32; 4]>, [u32; 2])) -> Self {
         let path = PathBuf::from(format!("{}.exr", file_name(document.name())));
         let path = std::path::absolute(&path).unwrap_or(path).display().to_string();
         let level = Some(document.preset().quality.unwrap_or(QualityLevel::High));
-        let animation = document.animation();
-        let film_secs = animation.duration_secs / animation.speed.max(1e-3);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
-        let last_frame = ((film_secs * 24.0).round() as u32).clamp(1, 99_999) - 1;
         Self {
             still: Still::Exr,
             width: 1920,
@@ -53,8 +51,35 @@ impl ExportForm {
             level,
             path,
             region: region.map(|region| (region, true)),
-            last_frame,
+            film: document.animation().clone(),
+            framed: (document.preset().scene.camera.clone(), viewport),
         }
+    }
+
+    /// The region in a still of its own shape: what was framed in the viewport.
+    fn region_of_still(&self) -> Option<[f32; 4]> {
+        let ([left, top, right, bottom], _) =
+            self.region.filter(|(_, wanted)| *wanted && self.shape == Shape::Camera)?;
+        let (camera, viewport) = &self.framed;
+        let corner = |at| camera.point_of(camera.direction_through(at, *viewport), [self.width, self.height]);
+        let ([left, top], [right, bottom]) = (corner([left, top])?, corner([right, bottom])?);
+        let inside = |share: f32| share.clamp(0.0, 1.0);
+        Some([left, top, right, bottom].map(inside))
+    }
+
+    /// Memory that it takes, in megabytes. Measured on a software adapter, whose memory is the processor's: so much for each
+    /// pixel that is rendered together, what is kept until it is written, and the program itself.
+    fn megabytes(&self) -> f64 {
+        let faces = if self.shape == Shape::CubeCross { 12.0 } else { 1.0 };
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let largest = LARGEST_WHOLE_PX as f64;
+        let (together, kept) = match self.still {
+            Still::LayersExr => (220.0 * pixels, 0.0),
+            Still::Exr | Still::CloudsExr if pixels > largest => (120.0 * 0.5 * largest, 0.0),
+            _ if pixels > largest => (120.0 * 0.5 * largest, 24.0 * pixels),
+            _ => (120.0 * pixels, 32.0 * pixels * (faces - 1.0)),
+        };
+        300.0 + (together + kept) / 1e6
     }
 
     fn is_cube(&self) -> bool {
@@ -116,7 +141,7 @@ fn sizes(ui: &mut Ui, form: &mut ExportForm) {
     }
     if is_cube {
         form.height = form.width;
-    } else if let Some((_, wanted)) = &mut form.region {
+    } else if let Some((_, wanted)) = form.region.as_mut().filter(|_| form.shape == Shape::Camera) {
         ui.checkbox(wanted, "Only the region").on_hover_text("An EXR keeps its place in the whole");
     }
 }
@@ -124,8 +149,13 @@ fn sizes(ui: &mut Ui, form: &mut ExportForm) {
 fn frames(ui: &mut Ui, form: &mut ExportForm) {
     let mut is_sequence = form.frames.is_some();
     if ui.checkbox(&mut is_sequence, "Sequence").on_hover_text("Numbered files, one for each frame").changed() {
-        form.frames =
-            is_sequence.then_some(Sequence { first: 0, last: form.last_frame, step: 1, fps: 24.0, keeps: true });
+        form.frames = is_sequence.then(|| Sequence {
+            first: 0,
+            last: last_frame(&form.film, 24.0),
+            step: 1,
+            fps: 24.0,
+            keeps: true,
+        });
         form.fit_number();
     }
     let Some(frames) = &mut form.frames else { return };
@@ -140,7 +170,16 @@ fn frames(ui: &mut Ui, form: &mut ExportForm) {
     frames.last = frames.last.max(frames.first);
     let field = ui.add(egui::DragValue::new(&mut frames.fps).range(0.1..=240.0).suffix(" fps"));
     row::name(ui, &field, "Frames per second", "Frames per second");
+    if field.changed() {
+        frames.last = last_frame(&form.film, frames.fps);
+    }
     ui.checkbox(&mut frames.keeps, "Keep what is there").on_hover_text("Files that exist are not rendered again");
+}
+
+/// The last frame of a film from its beginning; half a minute of frames where it has no end.
+fn last_frame(film: &Animation, fps: f64) -> u32 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some thousand frames")]
+    film.last_frame(0.0, fps).unwrap_or((30.0 * fps) as u32)
 }
 
 /// Draws the form.
@@ -169,10 +208,7 @@ pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>
     });
     ui.horizontal_wrapped(|ui| sizes(ui, form));
     ui.horizontal_wrapped(|ui| frames(ui, form));
-    // Measured on a software adapter, whose memory is the processor's: so much for each pixel, and the program itself.
-    let bytes = if form.still == Still::LayersExr { 220.0 } else { 120.0 };
-    let megabytes = 300.0 + f64::from(form.width) * f64::from(form.height) * bytes / 1e6;
-    ui.weak(format!("Takes about {megabytes:.0} MB of memory"));
+    ui.weak(format!("Takes about {:.0} MB of memory", form.megabytes()));
     ui.horizontal_wrapped(|ui| {
         ui.label("Quality");
         let viewport = ui.selectable_label(form.level.is_none(), "As in the window");
@@ -197,7 +233,7 @@ pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>
                     shape: form.shape,
                     level: form.level,
                     frames: form.frames,
-                    region: form.region.filter(|(_, wanted)| *wanted && !form.is_cube()).map(|(region, _)| region),
+                    region: form.region_of_still(),
                     path: PathBuf::from(form.path.trim()),
                 })));
             }

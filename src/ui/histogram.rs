@@ -22,12 +22,22 @@ pub struct HistogramState {
     pub is_auto: bool,
     /// The light of the last picture.
     pub light: Option<LightHistogram>,
+    /// The curve that was left for false colours.
+    left: Option<ToneMap>,
 }
 
 impl HistogramState {
-    /// Whether anybody wants to know the light of the picture.
-    pub fn is_wanted(&self) -> bool {
-        self.is_open || self.is_auto
+    /// False colours, or the curve that was left for them.
+    pub(super) fn toggled(&mut self, document: &Document) -> Action {
+        let mut scene = document.preset().scene.clone();
+        let curve = scene.display.tone_map;
+        scene.display.tone_map = if curve == ToneMap::FalseColour {
+            self.left.take().unwrap_or(ToneMap::Agx)
+        } else {
+            self.left = Some(curve);
+            ToneMap::FalseColour
+        };
+        Action::EditScene { key: "display.tone_map".to_owned(), scene: Box::new(scene) }
     }
 
     /// The change of exposure, in stops, that shows the mean of the picture as middle grey.
@@ -93,20 +103,8 @@ fn buttons(ui: &mut Ui, state: &mut HistogramState, document: &Document, actions
     let colours = ui.selectable_label(is_false, "False colour");
     row::name(ui, &colours, "False colour", "histogram.false_colour");
     if colours.on_hover_text("Stops above and below middle grey as colours").clicked() {
-        actions.push(toggled(document));
+        actions.push(state.toggled(document));
     }
-}
-
-/// False colours, or the curve that the sky was saved with.
-pub(super) fn toggled(document: &Document) -> Action {
-    let mut scene = document.preset().scene.clone();
-    let before = document.saved().scene.display.tone_map;
-    scene.display.tone_map = match scene.display.tone_map {
-        ToneMap::FalseColour if before == ToneMap::FalseColour => ToneMap::Agx,
-        ToneMap::FalseColour => before,
-        _ => ToneMap::FalseColour,
-    };
-    Action::EditScene { key: "display.tone_map".to_owned(), scene: Box::new(scene) }
 }
 
 fn chart(ui: &mut Ui, light: Option<&LightHistogram>, display: &Display) {

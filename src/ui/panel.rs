@@ -359,7 +359,12 @@ impl Visitor for Rows<'_> {
         match button {
             HeaderButton::Reset => list.visit_item(index, &mut Reset),
             HeaderButton::Duplicate => duplicate_last_from(list, index),
-            HeaderButton::Remove => list.remove(index),
+            HeaderButton::Remove => {
+                list.remove(index);
+                // What follows the list has to know which.
+                self.edit = Some(format!("{key}.{index}"));
+                return;
+            }
         }
         self.edit = Some(key);
     }

@@ -41,6 +41,7 @@ pub struct Snapshot {
     pub quality: Quality,
     path: Option<std::path::PathBuf>,
     saved: Preset,
+    time_secs: f64,
     size: [u32; 2],
     rgba8: Vec<u8>,
     texture: TextureHandle,
@@ -107,6 +108,7 @@ impl SnapshotState {
             quality: document.quality().clone(),
             path: document.path().cloned(),
             saved: document.saved().clone(),
+            time_secs: document.time_secs(),
             size,
             rgba8,
             texture,
@@ -252,6 +254,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut SnapshotState, document: &Document, 
                 quality: Box::new(snapshot.quality.clone()),
                 path: snapshot.path.clone(),
                 saved: Box::new(snapshot.saved.clone()),
+                time_secs: snapshot.time_secs,
             });
         }
         None => {}
@@ -335,7 +338,9 @@ fn differences(snapshot: &Snapshot, document: &Document) -> Vec<String> {
 
 /// Whether the chosen snapshot is to be seen instead of the picture.
 pub(super) fn is_flipped(ui: &Ui, state: &SnapshotState) -> bool {
-    state.beside == Beside::Flip && !ui.ctx().egui_wants_keyboard_input() && ui.input(|input| input.key_down(Key::B))
+    state.beside == Beside::Flip
+        && !ui.ctx().egui_wants_keyboard_input()
+        && ui.input(|input| input.key_down(Key::B) && input.modifiers.is_none())
 }
 
 /// The part of `place` left of a divider at a share of its width.

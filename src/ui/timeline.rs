@@ -300,9 +300,7 @@ fn track(
     let ends = egui::Rangef::new(scale.left, scale.left + scale.width);
     painter.hline(ends, line.center().y, Stroke::new(1.0, ui.visuals().weak_text_color()));
     for (index, keyframe) in track.keys.iter().enumerate() {
-        if keyframe.time_secs > scale.duration_secs {
-            continue;
-        }
+        // Keys beyond the end lie at it.
         let at = Pos2::new(scale.x(keyframe.time_secs), line.center().y);
         let id = ui.scope_id().with((&track.key, index));
         let response = ui.interact(Rect::from_center_size(at, Vec2::splat(3.0 * KEY)), id, Sense::click_and_drag());

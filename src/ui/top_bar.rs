@@ -1,6 +1,7 @@
 //! The bar at the top: menus, time, and the document's name.
 
-use egui::{Align, Layout, Theme, Ui};
+use egui::containers::menu::{MenuConfig, SubMenuButton};
+use egui::{Align, Layout, PopupCloseBehavior, Theme, Ui};
 
 use super::{Busy, Command, State, row};
 use crate::app::action::{Action, Request};
@@ -65,7 +66,9 @@ fn menus(
         entries(ui, (state, document), &groups, &mut chosen);
     });
     ui.menu_button("View", |ui| {
-        ui.menu_button("Cameras", |ui| super::cameras::menu(ui, document, actions));
+        // Names are typed in it: only a click outside closes it.
+        let stays = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        SubMenuButton::new("Cameras").config(stays).ui(ui, |ui| super::cameras::menu(ui, document, actions));
         let groups = [
             &[
                 Command::Presets,

@@ -144,7 +144,9 @@ pub(super) fn show(
             if !compared(ui, rect, truth) {
                 let place = fitted(rect, picture.size);
                 image(&painter, place, picture.texture);
-                beside(ui, place, snapshots);
+                // Snapshots are whole pictures; of a region only their part is seen.
+                let of_whole = if state.region.is_some() { whole } else { place };
+                beside(&painter.with_clip_rect(place), (ui, of_whole), snapshots);
             }
             let place = fitted(rect, picture.size);
             // Side by side there are two pictures, and neither fills the place.
@@ -260,7 +262,7 @@ fn compared(ui: &Ui, rect: Rect, truth: &mut TruthState) -> bool {
         }
         Comparison::Flip => {
             let typing = ui.ctx().egui_wants_keyboard_input();
-            let flipped = !typing && ui.input(|input| input.key_down(egui::Key::T));
+            let flipped = !typing && ui.input(|input| input.key_down(egui::Key::T) && input.modifiers.is_none());
             image(&painter, place, if flipped { other.texture } else { still.texture });
             caption(&painter, place, if flipped { reference } else { "Realtime" }, Align2::CENTER_TOP);
         }
@@ -273,28 +275,28 @@ fn compared(ui: &Ui, rect: Rect, truth: &mut TruthState) -> bool {
 }
 
 /// Draws the chosen snapshot over the picture, as far as it is wanted.
-fn beside(ui: &Ui, place: Rect, state: &mut SnapshotState) {
+fn beside(painter: &egui::Painter, (ui, place): (&Ui, Rect), state: &mut SnapshotState) {
     let Some((snapshot, picture)) = state.chosen() else { return };
-    let painter = ui.painter_at(place);
     // As high as the picture and in its middle: a lens shows the same things there, whatever the width.
     let [width, height] = picture.size.map(|side| side.max(1) as f32);
     let theirs = Rect::from_center_size(place.center(), Vec2::new(place.height() * width / height, place.height()));
     match state.beside {
         Beside::Flip if !snapshots::is_flipped(ui, state) => {}
         Beside::Flip => {
-            image(&painter, theirs, picture.texture);
-            caption(&painter, place, &snapshot.name, Align2::CENTER_TOP);
+            image(painter, theirs, picture.texture);
+            caption(painter, place, &snapshot.name, Align2::CENTER_TOP);
         }
         Beside::Wipe => {
             let left = snapshots::left_of(place, state.divider);
-            image(&painter.with_clip_rect(left), theirs, picture.texture);
-            caption(&painter.with_clip_rect(left), left, &snapshot.name, Align2::RIGHT_TOP);
+            let painter = &painter.with_clip_rect(left.intersect(painter.clip_rect()));
+            image(painter, theirs, picture.texture);
+            caption(painter, left, &snapshot.name, Align2::RIGHT_TOP);
             divider(ui, place, ("Divider between snapshot and picture", "snapshots.divider"), &mut state.divider);
         }
         Beside::Difference => {
             let Some(difference) = state.difference() else { return };
-            image(&painter, place, difference.texture);
-            caption(&painter, place, &format!("Difference to {}, ×8", snapshot.name), Align2::CENTER_TOP);
+            image(painter, place, difference.texture);
+            caption(painter, place, &format!("Difference to {}, ×8", snapshot.name), Align2::CENTER_TOP);
         }
     }
 }

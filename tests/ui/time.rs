@@ -83,10 +83,10 @@ fn a_day_is_three_clicks() {
 fn where_the_sun_does_not_rise_it_is_said() {
     let mut editor = Editor::new();
     let mut scene = editor.scene().clone();
-    (scene.sun.latitude_deg, scene.sun.day) = (89.0, 172);
+    (scene.sun.latitude_deg, scene.sun.day) = (89.0, 355);
     editor.harness.state_mut().perform(Action::EditScene { key: "sun".to_owned(), scene: Box::new(scene) });
     editor.harness.state_mut().perform(Action::DayLapse { film_secs: 10.0, speed: 1.0 });
-    assert!(editor.toasts()[0].contains("does not rise"), "{:?}", editor.toasts());
+    assert!(editor.toasts()[0].contains("does not come up"), "{:?}", editor.toasts());
     assert!(!editor.document().animation().is_moving());
 }
 
@@ -119,7 +119,12 @@ fn exposure_is_metered_and_false_colours_go_as_they_came() {
     editor.harness.run();
     editor.click_label("Expose");
     assert!((f64::from(editor.scene().display.exposure_ev) - wanted).abs() < 1e-4, "{wanted}");
-    let curve = editor.scene().display.tone_map;
+    let curve = nephoscope::scene::ToneMap::Neutral;
+    let mut scene = editor.scene().clone();
+    scene.display.tone_map = curve;
+    let edit = Action::EditScene { key: "display.tone_map".to_owned(), scene: Box::new(scene) };
+    editor.harness.state_mut().perform(edit);
+    editor.harness.run();
     editor.click("histogram.false_colour");
     assert_eq!(editor.scene().display.tone_map, nephoscope::scene::ToneMap::FalseColour);
     editor.harness.key_press_modifiers(COMMAND | egui::Modifiers::SHIFT, egui::Key::E);

@@ -10,17 +10,21 @@ const PERIOD: Duration = Duration::from_millis(100);
 const STEADY_EV: f32 = 0.1;
 
 impl App {
-    /// Measures the last picture, if anybody wants to know and `is_new` or nothing is known yet.
-    pub(super) fn meter(&mut self, is_new: bool) {
-        let Some(live) = &mut self.live else { return };
+    /// Measures the last picture, if anybody wants to know and `is_new` or nothing is known yet. Says when to come again.
+    pub(super) fn meter(&mut self, is_new: bool) -> Option<Instant> {
+        let live = self.live.as_mut()?;
         let state = &mut self.session.ui.histogram;
-        if !state.is_wanted() {
+        if !state.is_open {
             state.light = None;
-            return;
+            return None;
         }
         self.is_metered &= !is_new;
-        if self.is_metered && state.light.is_some() || self.metered.elapsed() < PERIOD {
-            return;
+        if self.is_metered && state.light.is_some() {
+            return None;
+        }
+        let again = Some(Instant::now() + PERIOD);
+        if self.metered.elapsed() < PERIOD {
+            return again;
         }
         match live.viewport.light_histogram() {
             Ok(Some(light)) => {
@@ -29,11 +33,12 @@ impl App {
                 state.light = Some(light);
                 live.draw_within(Duration::ZERO);
             }
-            Ok(None) => return,
+            // Another picture is under way, or the shader is being compiled.
+            Ok(None) => return again,
             Err(error) => {
                 (state.is_open, state.is_auto) = (false, false);
                 self.session.ui.toasts.error(error);
-                return;
+                return None;
             }
         }
         let document = &mut self.session.document;
@@ -42,7 +47,8 @@ impl App {
             && state.is_auto
             && !has_keys
         {
-            document.apply(&Action::ChangeExposure(stops));
+            document.apply(&Action::MeterExposure(stops));
         }
+        None
     }
 }

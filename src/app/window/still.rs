@@ -27,6 +27,7 @@ impl App {
         if export.shape == Shape::Panorama {
             // The file says what it shows.
             preset.scene.camera.projection = Projection::Equirect;
+            preset.animation.override_by(["camera.projection"]);
         }
         let text = if export.frames.is_some() { "Rendering a sequence" } else { "Rendering a still" }.to_owned();
         let job = StillJob { gpu: live.gpu.clone(), preset, quality, time_secs: document.time_secs(), export };

@@ -120,6 +120,13 @@ impl App {
             }
             return;
         }
+        if self.session.ui.viewport.region.is_some() {
+            if request == Request::Snapshot {
+                self.session.ui.toasts.error("Only a region is drawn; Ctrl+B draws all of it, then take the snapshot");
+            }
+            // A part is no picture of a preset.
+            return;
+        }
         if request == Request::Snapshot && self.is_working {
             self.session.ui.toasts.info("The snapshot is taken when the picture is finished");
         }

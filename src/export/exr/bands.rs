@@ -13,7 +13,7 @@ use half::f16;
 use super::{ExrDepth, ExrMetadata, ExrOptions, HALF_MAX, layer_attributes};
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;
-use crate::images::FloatImage;
+use crate::images::{FloatImage, find_non_finite, position};
 
 /// Rows of a picture, from the top.
 pub type Band = Vec<[f32; 4]>;
@@ -105,15 +105,11 @@ fn feed<E: From<ExportError>>(
             return Err(ExportError::BadImage { path: path.to_owned(), reason }.into());
         }
         let place = |index: usize| {
-            let at = |value: usize| u32::try_from(value).unwrap_or(u32::MAX);
-            (at(index % width_px), row.saturating_add(at(index / width_px)))
+            let (x, y) = position(index, width);
+            (x, row.saturating_add(y))
         };
-        let broken = |pixel: &[f32; 4]| pixel.iter().position(|value| !value.is_finite());
-        if let Some((index, channel)) = band.iter().enumerate().find_map(|(index, pixel)| Some((index, broken(pixel)?)))
-        {
-            let count = band.iter().filter(|pixel| broken(pixel).is_some()).count();
-            let (x, y) = place(index);
-            let channel = ['R', 'G', 'B', 'A'][channel];
+        if let Some((count, first, channel)) = find_non_finite(&band, None) {
+            let (x, y) = place(first);
             return Err(ExportError::NonFinite { path: path.to_owned(), count, x, y, channel }.into());
         }
         let large = |pixel: &[f32; 4]| pixel.iter().copied().find(|value| value.abs() > HALF_MAX);

@@ -115,15 +115,57 @@ fn tracks_stay_with_their_layers() {
     ]);
     let names = |animation: &Animation| animation.tracks.iter().map(|track| track.key.clone()).collect::<Vec<_>>();
     let mut without = begun.clone();
-    without.follow("layers", &["a", "b"], &["b"]);
+    without.follow("layers", "layers", &["a", "b"], &["b"]);
     assert_eq!(names(&without), ["layers.0.density", "wind.speed_mps"]);
     assert_eq!(without.tracks[0].keys[0].value, "0.2", "the track of the second layer");
     let mut with = begun.clone();
-    with.follow("layers", &["a", "b"], &["a", "a", "b"]);
+    with.follow("layers", "layers", &["a", "b"], &["a", "a", "b"]);
     assert_eq!(names(&with), ["layers.0.density", "layers.2.density", "wind.speed_mps"]);
+    let mut first_twin = begun.clone();
+    first_twin.follow("layers.0", "layers", &["a", "a"], &["a"]);
+    assert_eq!(first_twin.tracks[0].keys[0].value, "0.2", "the first of two twins was taken");
     let mut same = begun.clone();
-    same.follow("layers", &["a", "b"], &["a", "c"]);
+    same.follow("layers", "layers", &["a", "b"], &["a", "c"]);
     assert_eq!(same, begun, "an edited layer is still that layer");
+}
+
+#[test]
+fn what_has_no_keys_does_not_depend_on_the_times_that_were_shown() {
+    let moving = animation(&[("layers.0.base_m", &[(0.0, "1000", Ease::Linear), (10.0, "9000", Ease::Linear)])]);
+    let begun = Scene::default();
+    let mut scene = begun.clone();
+    moving.play(&mut scene, 10.0);
+    assert!(scene.problems().is_empty() && scene.layers[0].top_m == begun.layers[0].top_m, "{:?}", scene.layers[0]);
+    moving.play(&mut scene, 0.0);
+    assert_eq!(scene.layers[0].base_m, 1000.0, "and back");
+}
+
+#[test]
+fn a_film_is_long_enough_for_its_keys_and_recording_does_not_fill_it() {
+    let mut moving = animation(&[("weather.coverage", &[(0.0, "0.2", Ease::Linear)])]);
+    let mut scene = Scene::default();
+    moving.set_key(&scene, "wind.speed_mps", 45.0);
+    assert_eq!(moving.duration_secs, 45.0);
+    for tick in 0..1000 {
+        let time = 50.0 + f64::from(tick) * 0.005;
+        moving.play(&mut scene, time);
+        scene.weather.coverage = 0.5 + 0.0004 * f32::from(u16::try_from(tick).expect("small"));
+        moving.absorb(&scene, time);
+    }
+    let keys = moving.track("weather.coverage").expect("it has keys").keys.len();
+    assert!((50..=140).contains(&keys), "five seconds of recording made {keys} keys");
+    assert_eq!(moving.fault(&Scene::default()), None);
+    let mut one_layer = Scene::default();
+    moving.set_key(
+        &Scene { layers: vec![one_layer.layers[0].clone(); 3], ..Scene::default() },
+        "layers.2.density",
+        0.0,
+    );
+    one_layer.layers.truncate(1);
+    moving.keep_only_what_is_in(&one_layer);
+    assert_eq!(moving.fault(&one_layer), None, "a layer that is gone takes its keys along");
+    moving.override_by(["weather"]);
+    assert!(moving.track("weather.coverage").is_none() && moving.track("wind.speed_mps").is_some());
 }
 
 #[test]
@@ -147,8 +189,12 @@ fn a_day_goes_from_dawn_to_dusk() {
     assert!((hour(300.0) - 12.0).abs() < 2.0 && hour(0.0) < 5.0 && hour(600.0) > 19.0, "{} {}", hour(0.0), hour(600.0));
     let (early, late) = (hour(150.0), hour(450.0));
     assert!(((late - early) / (hour(600.0) - hour(0.0)) - 0.5).abs() < 1e-3, "evenly");
+    sun.latitude_deg = 64.0;
+    assert!(Animation::default().day(&sun, 20.0, 30.0).is_some(), "a night as bright as twilight");
     sun.latitude_deg = 85.0;
-    assert_eq!(Animation::default().day(&sun, 20.0, 30.0), None, "midsummer at the pole");
+    assert!(Animation::default().day(&sun, 20.0, 30.0).is_some(), "midsummer at the pole");
+    sun.day = 355;
+    assert_eq!(Animation::default().day(&sun, 20.0, 30.0), None, "midwinter at the pole");
 }
 
 #[test]
