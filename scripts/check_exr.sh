@@ -56,4 +56,20 @@ export_and_check clouds ', half openexr' broken_sunset --clouds-only
 export_and_check equirect ', half openexr' moonlit --projection equirect
 export_and_check float ', float openexr' stratocumulus --depth float --compression piz
 export_and_check lossy ', half openexr' clear_puffs --compression dwaa
-say "5 exported files are sound"
+export_and_check region ', half openexr' fair_weather --region 40x20+30+10
+"$program" pano fair_weather -o "$folder/cube.exr" --projection cube --size 16x16 --quality draft --adapter cpu >&2
+for face in px nx py ny pz nz; do check "$folder/cube.$face.exr"; done
+# Layers have more channels than four.
+"$program" render fair_weather -o "$folder/layers.exr" --layers --size 96x54 --quality draft --adapter cpu >&2
+exrinfo -s "$folder/layers.exr" >/dev/null || fail "layers: exrinfo finds it invalid"
+oiiotool --info -v --stats "$folder/layers.exr" >"$folder/info" || fail "layers: oiiotool cannot read it"
+for channel in direct.R distance.X motion.u motion.v transmittance.A; do
+    grep -q "$channel" "$folder/info" || fail "layers: lacks the channel $channel"
+done
+"$program" export fair_weather --what weather-map -o "$folder/map.exr" --adapter cpu >&2
+exrinfo -s "$folder/map.exr" >/dev/null || fail "map: exrinfo finds it invalid"
+"$program" pano fair_weather -o "$folder/sky.hdr" --size 64x32 --quality draft --adapter cpu >&2
+oiiotool --info -v --stats "$folder/sky.hdr" | grep -q 'Stats NanCount: 0 0 0' || fail "sky.hdr: oiiotool finds it broken"
+"$program" render fair_weather -o "$folder/deep.png" --depth 16 --size 64x36 --quality draft --adapter cpu >&2
+oiiotool --info "$folder/deep.png" | grep -q 'uint16' || fail "deep.png: oiiotool finds no 16 bits"
+say "16 exported files are sound"

@@ -245,6 +245,7 @@ fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result
             content: content(job.export.still),
             size: job.export.size,
             cube: cube(job.export.shape),
+            frame_secs: job.preset.animation.speed / job.export.frames.map_or(24.0, |frames| frames.fps),
             largest_whole: LARGEST_WHOLE_PX,
             region: job.export.region.map(|region| pixels_of(region, job.export.size)),
             about: About { preset: &preset, quality: &job.quality, time_secs: *time_secs },

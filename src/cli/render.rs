@@ -69,7 +69,7 @@ pub(super) struct RenderArgs {
     #[arg(long)]
     clouds_only: bool,
     /// Write layers of light into the .exr beside the picture, which is their sum: direct, multiple, ambient, bounce, air,
-    /// shafts, disc, backdrop; and the clouds' transmittance and distance.
+    /// shafts, disc, backdrop; and the clouds' transmittance, distance, and motion until the next frame (`--fps`) in pixels.
     #[arg(long, conflicts_with = "clouds_only")]
     layers: bool,
     /// Bits of a sample: of an EXR half, or float where half does not reach; of a PNG 8.
@@ -442,7 +442,8 @@ fn write_picture(
             !interrupt::is_asked()
         };
         let (size, cube, region) = (job.size, job.cube, job.region);
-        let file = StillFile { path, content, size, cube, region, largest_whole: LARGEST_WHOLE_PX, about };
+        let frame_secs = job.preset.animation.speed / args.fps;
+        let file = StillFile { path, content, size, cube, region, frame_secs, largest_whole: LARGEST_WHOLE_PX, about };
         return match file.render(renderer, &mut proceed) {
             Ok(true) => Ok(()),
             Ok(false) => Err(not_finished()),

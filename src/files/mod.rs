@@ -4,6 +4,7 @@
 //! images are relative to their preset in files, and absolute in memory.
 
 mod grid;
+mod motion;
 mod open;
 mod picture;
 mod programs;

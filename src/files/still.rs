@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::motion::motion;
 use super::picture::{metadata, save_png_pixels, save_with};
 use super::{About, FileError, save_png};
 use crate::export::ExportError;
@@ -103,6 +104,8 @@ pub struct StillFile<'a> {
     pub cube: Option<CubeLayout>,
     /// The part of the picture that is rendered, in pixels: offset from the top left, then width and height. `None` for all.
     pub region: Option<[[u32; 2]; 2]>,
+    /// Seconds of the scene until the next frame, for the motion that goes with layers.
+    pub frame_secs: f64,
     /// Pictures of more pixels are rendered in bands; [`LARGEST_WHOLE_PX`](crate::scene::LARGEST_WHOLE_PX) suits most machines.
     pub largest_whole: u64,
     /// What it shows, and how it is computed.
@@ -269,8 +272,17 @@ impl StillFile<'_> {
             return Ok(layers.map(|layers| {
                 let lights = layers.lights.into_iter().map(|(name, light)| (name.to_owned(), light)).collect();
                 let distance = layers.beauty.distance_m.clone();
-                let data =
-                    vec![("transmittance.A".to_owned(), layers.transmittance), ("distance.X".to_owned(), distance)];
+                let preset = self.about.preset;
+                let next =
+                    if preset.animation.is_moving() { preset.at(time_secs + self.frame_secs) } else { scene.clone() };
+                let [across, down] = motion(&layers.beauty, window, (scene, &next), self.frame_secs);
+                let data = [
+                    ("transmittance.A", layers.transmittance),
+                    ("distance.X", distance),
+                    ("motion.u", across),
+                    ("motion.v", down),
+                ];
+                let data = data.into_iter().map(|(name, values)| (name.to_owned(), values)).collect();
                 Taken::Light(layers.beauty, ExrLayers { lights, data })
             }));
         }

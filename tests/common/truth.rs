@@ -141,7 +141,7 @@ impl March {
         let ([state, _], counted) =
             self.with_inputs(&truth, &blind_bounds(), |bound| self.until_done(&key, bound, ["marched_rays", "unused"]));
         let rays = state.chunks_exact(32).take((SIDE * SIDE) as usize).map(bytemuck::pod_read_unaligned::<[f32; 8]>);
-        (rays.map(|ray| [ray[0], ray[1], ray[2], 1.0 - ray[3]]).collect(), counted)
+        (rays.map(|ray| [ray[0], ray[1], ray[2], (-ray[3]).exp()]).collect(), counted)
     }
 
     /// Paths: the mean over all pixels, which look in the same direction.

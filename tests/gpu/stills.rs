@@ -232,7 +232,16 @@ fn large_pictures_are_written_in_bands() {
     let mut write = |name: &str, content: Content, largest_whole: u64| {
         let path = folder.path().join(name);
         let about = About { preset: &preset, quality: &quality, time_secs: 0.0 };
-        let file = StillFile { path: &path, content, size: [48, 160], cube: None, region: None, largest_whole, about };
+        let file = StillFile {
+            path: &path,
+            content,
+            size: [48, 160],
+            cube: None,
+            region: None,
+            frame_secs: 0.1,
+            largest_whole,
+            about,
+        };
         let mut shares = Vec::new();
         let written = file.render(&mut renderer, &mut |share| {
             shares.push(share);

@@ -54,7 +54,10 @@ fn the_converged_march_gives_a_slab_its_discrete_closed_form_however_it_is_split
                     let case = format!("tau {tau}, {cells} cells, mu {mu}, mu0 {mu0}, up {up}");
                     assert!(error < 3e-5, "{case}: {} is off {expected} by {error:e}", seen[0]);
                     let through = (-f64::from(tau) / f64::from(mu)).exp();
-                    assert!((f64::from(seen[3]) - through).abs() < 5e-5, "{case}: {} passes", seen[3]);
+                    let left = f64::from(seen[3]);
+                    // Also of the little that thick cloud lets through, until the march takes it for none.
+                    let floor = if through > 1e-5 { 0.0 } else { 1e-5 };
+                    assert!((left - through).abs() < 5e-5 * through + floor, "{case}: {left} passes, not {through}");
                     assert_eq!(counted[3], 0, "{case}: no iteration is lost");
                 }
             }

@@ -351,6 +351,45 @@ fn a_pasted_sky_asks_before_work_is_lost_and_is_not_saved_yet() {
 }
 
 #[test]
+fn a_stretch_of_work_goes_in_both_themes() {
+    for theme in [egui::Theme::Dark, egui::Theme::Light] {
+        let mut editor = Editor::new();
+        editor.harness.ctx.set_theme(theme);
+        editor.harness.run();
+        // Search, edit, reset.
+        editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::F);
+        editor.harness.run();
+        editor.harness.event(egui::Event::Text("coverage".to_owned()));
+        editor.harness.run();
+        editor.type_number("weather.coverage", "0.9");
+        assert_eq!(editor.scene().weather.coverage, 0.9, "{theme:?}");
+        editor.click("weather.coverage.reset");
+        assert_eq!(editor.scene().weather.coverage, Scene::default().weather.coverage);
+        // Undo both.
+        for _ in 0..2 {
+            editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+            editor.harness.run();
+        }
+        assert!(!editor.document().is_modified(), "{theme:?}");
+        // A and B.
+        let context = editor.harness.ctx.clone();
+        let session = editor.harness.state_mut();
+        session.ui.viewport.picture = Some(picture(1));
+        session.ui.snapshots.add(&context, &session.document, ([16, 9], [90, 90, 90, 255].repeat(16 * 9)));
+        editor.harness.run();
+        editor.click("snapshots.0");
+        editor.click("snapshots.Wipe");
+        assert!(editor.harness.query_by_label("Divider between snapshot and picture").is_some(), "{theme:?}");
+        // Keys.
+        editor.harness.state_mut().perform(Action::SetKey("weather.coverage".to_owned()));
+        editor.harness.state_mut().ui.timeline.is_open = true;
+        editor.harness.run();
+        editor.click("weather.coverage.keys.remove");
+        assert!(!editor.document().animation().is_moving(), "{theme:?}");
+    }
+}
+
+#[test]
 fn text_has_its_own_undo() {
     let mut editor = Editor::new();
     editor.type_number("weather.coverage", "0.7");

@@ -12,7 +12,8 @@ pub mod other;
 pub mod scene;
 
 pub(super) use camera::{Eye, camera_uniforms};
-pub(super) use clouds::{field_uniforms, plain_sky, scene_uniforms, wind_mps};
+pub(crate) use clouds::wind_mps;
+pub(super) use clouds::{field_uniforms, plain_sky, scene_uniforms};
 pub(super) use ground::ground_uniforms;
 
 use super::pass::sky::{SkyInputs, SkyParts};
