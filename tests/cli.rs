@@ -541,3 +541,21 @@ fn a_region_keeps_its_place_in_the_whole() {
     );
     refuses(&folder, &render("fair_weather", "a.exr", &["--region", "60x10"]), 2, &["WIDTHxHEIGHT+LEFT+TOP"]);
 }
+
+#[test]
+fn clouds_alone_have_associated_or_straight_alpha() {
+    let folder = folder();
+    let light = |name: &str, more: &[&'static str]| {
+        renders(&folder, &render("fair_weather", name, &[&["--clouds-only", "--depth", "float"], more].concat()));
+        nephoscope::images::map::read_exr(&folder.path().join(name)).expect("it is sound").rgba
+    };
+    let (associated, straight) = (light("clouds.exr", &[]), light("straight.exr", &["--straight"]));
+    let mut thin = 0;
+    for (own, over) in associated.iter().zip(&straight) {
+        assert_eq!(own[3], over[3], "the same opacity");
+        assert!((own[1] - over[1] * over[3]).abs() <= 1e-5 * own[1].max(1e-3), "{own:?} {over:?}");
+        thin += u32::from(own[3] > 0.01 && own[3] < 0.9);
+    }
+    assert!(thin > 10, "only {thin} pixels tell the two apart");
+    refuses(&folder, &render("fair_weather", "a.exr", &["--straight"]), 2, &["--clouds-only"]);
+}

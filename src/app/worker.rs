@@ -14,7 +14,7 @@ use super::lab::News;
 use super::truth::{CompareJob, Compared};
 use super::viewport::pixels_of;
 use crate::export::exr::ExrOptions;
-use crate::files::{About, Content, CubeLayout, StillFile, files_of_still, save_png};
+use crate::files::{About, Alpha, Content, CubeLayout, StillFile, files_of_still, save_png};
 use crate::gpu::Gpu;
 use crate::images::pattern::FramePattern;
 use crate::render::Renderer;
@@ -201,7 +201,7 @@ fn content(still: Still) -> Content {
     match still {
         Still::Exr => Content::Linear(ExrOptions::default()),
         Still::LayersExr => Content::Layers(ExrOptions::default()),
-        Still::CloudsExr => Content::CloudsAlone(ExrOptions::default()),
+        Still::CloudsExr => Content::CloudsAlone(ExrOptions::default(), Alpha::Associated),
         Still::Radiance => Content::Radiance,
         Still::Png => Content::Display,
         Still::Png16 => Content::Display16,

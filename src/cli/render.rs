@@ -16,7 +16,7 @@ use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
 use crate::files::{
-    self, About, Content, CubeLayout, FileError, KeptPrograms, StillError, StillFile, files_of_still, save_exr,
+    self, About, Alpha, Content, CubeLayout, FileError, KeptPrograms, StillError, StillFile, files_of_still, save_exr,
     save_png,
 };
 use crate::gpu::Gpu;
@@ -68,6 +68,9 @@ pub(super) struct RenderArgs {
     /// Only clouds, with their opacity as alpha (EXR).
     #[arg(long)]
     clouds_only: bool,
+    /// With `--clouds-only`: colours that have to be multiplied by alpha, instead of those that are.
+    #[arg(long, requires = "clouds_only")]
+    straight: bool,
     /// Write layers of light into the .exr beside the picture, which is their sum: direct, multiple, ambient, bounce, air,
     /// shafts, disc, backdrop; and the clouds' transmittance, distance, and motion until the next frame (`--fps`) in pixels.
     #[arg(long, conflicts_with = "clouds_only")]
@@ -154,6 +157,7 @@ impl RenderArgs {
             quality: None,
             integration: Integration::default(),
             clouds_only: false,
+            straight: false,
             layers: false,
             depth: None,
             compression: CompressionArg::Zip,
@@ -221,7 +225,7 @@ impl RenderArgs {
             (Some("exr"), _, Some(DepthArg::Eight | DepthArg::Sixteen)) => {
                 refuse("--depth 8 and 16 are for .png; an EXR has half or float")
             }
-            (Some("exr"), ..) if self.clouds_only => Ok(Content::CloudsAlone(self.exr_options())),
+            (Some("exr"), ..) if self.clouds_only => Ok(Content::CloudsAlone(self.exr_options(), self.alpha())),
             (Some("exr"), ..) if self.layers => Ok(Content::Layers(self.exr_options())),
             (Some("exr"), ..) => Ok(Content::Linear(self.exr_options())),
             (Some("png" | "hdr"), Some(said), _) => refuse(said),
@@ -236,6 +240,10 @@ impl RenderArgs {
             _ if path.exists() && !path.is_file() => Err(ExportError::NotAFile { path: path.clone() }.into()),
             _ => refuse(&format!("-o {} ends neither in .png nor in .exr nor in .hdr", path.display())),
         }
+    }
+
+    fn alpha(&self) -> Alpha {
+        if self.straight { Alpha::Straight } else { Alpha::Associated }
     }
 
     fn exr_options(&self) -> ExrOptions {
@@ -467,8 +475,11 @@ fn write_picture(
     }
     eprintln!("{}: {}", path.display(), describe(goal, &truth.progress()));
     match content {
-        Content::Linear(options) | Content::CloudsAlone(options) => {
-            let image = truth.picture(renderer)?.image;
+        Content::Linear(options) | Content::CloudsAlone(options, _) => {
+            let mut image = truth.picture(renderer)?.image;
+            if let Content::CloudsAlone(_, alpha) = content {
+                alpha.apply(&mut image);
+            }
             save_exr(path, image, &about, options)?;
         }
         _ => {

@@ -31,7 +31,27 @@ pub enum Content {
     /// The same, with layers of light beside it: EXR.
     Layers(ExrOptions),
     /// Clouds with their opacity: EXR.
-    CloudsAlone(ExrOptions),
+    CloudsAlone(ExrOptions, Alpha),
+}
+
+/// What colours say where clouds are thin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alpha {
+    /// The light that the clouds add, as EXR has it: laid over a picture by `light + (1 - A) behind`.
+    Associated,
+    /// The same over their opacity, for programs that multiply by it.
+    Straight,
+}
+
+impl Alpha {
+    /// Gives a picture with associated alpha this one.
+    pub fn apply(self, image: &mut LinearImage) {
+        if self == Self::Straight {
+            for [red, green, blue, alpha] in image.rgba.iter_mut().filter(|pixel| pixel[3] > 0.0) {
+                (*red, *green, *blue) = (*red / *alpha, *green / *alpha, *blue / *alpha);
+            }
+        }
+    }
 }
 
 impl Content {
@@ -40,7 +60,7 @@ impl Content {
         match self {
             Self::Display | Self::Display16 => "png",
             Self::Radiance => "hdr",
-            Self::Linear(_) | Self::Layers(_) | Self::CloudsAlone(_) => "exr",
+            Self::Linear(_) | Self::Layers(_) | Self::CloudsAlone(..) => "exr",
         }
     }
 
@@ -48,7 +68,7 @@ impl Content {
     pub fn output(self) -> Output {
         match self {
             Self::Display | Self::Display16 => Output::Display,
-            Self::CloudsAlone(_) => Output::CloudsAlone,
+            Self::CloudsAlone(..) => Output::CloudsAlone,
             Self::Radiance | Self::Linear(_) | Self::Layers(_) => Output::Linear,
         }
     }
@@ -133,7 +153,9 @@ impl StillFile<'_> {
                     return Err(StillError::TooLarge);
                 }
                 match self.content {
-                    Content::Linear(options) | Content::CloudsAlone(options) if part.is_none() && self.is_large() => {
+                    Content::Linear(options) | Content::CloudsAlone(options, _)
+                        if part.is_none() && self.is_large() =>
+                    {
                         return self.write_in_bands(renderer, options, proceed);
                     }
                     _ if part.is_none() && self.is_large() => {
@@ -297,7 +319,13 @@ impl StillFile<'_> {
                 let (size, rgb16) = still.display16(renderer)?;
                 Taken::Words(size, rgb16)
             }
-            _ => Taken::Light(still.picture(renderer)?.image, ExrLayers::default()),
+            content => {
+                let mut image = still.picture(renderer)?.image;
+                if let Content::CloudsAlone(_, alpha) = content {
+                    alpha.apply(&mut image);
+                }
+                Taken::Light(image, ExrLayers::default())
+            }
         }))
     }
 
@@ -318,7 +346,7 @@ impl StillFile<'_> {
             }
             (
                 Taken::Light(image, layers),
-                Content::Linear(options) | Content::Layers(options) | Content::CloudsAlone(options),
+                Content::Linear(options) | Content::Layers(options) | Content::CloudsAlone(options, _),
             ) => {
                 save_with(path, (image, layers), (about, camera, window), options)?;
             }
