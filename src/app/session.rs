@@ -354,6 +354,15 @@ impl Session {
         self.refresh_library();
     }
 
+    /// The same for a preset of the list, whose other entries stay as they are.
+    pub fn note_picture(&mut self, preset: &Path, picture: ([u32; 2], &[u8])) {
+        let kept = storage::keep_picture(&self.folders.thumbnails(), preset, picture);
+        let entry = self.ui.library.user.iter_mut().find(|entry| entry.source == preset);
+        if let (Some(entry), Some(path)) = (entry, kept) {
+            entry.thumbnail = Some(ui::Thumbnail::File(path));
+        }
+    }
+
     /// Opens a sky; the document stays as it is if that fails.
     pub fn open(&mut self, source: &Path) {
         match files::open(source) {

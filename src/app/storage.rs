@@ -53,14 +53,14 @@ fn picture_of(pictures: &Path, preset: &Path) -> Option<PathBuf> {
     Some(pictures.join(format!("{}.png", &sha256_hex(&text)[..24])))
 }
 
-/// Keeps what the window shows of a preset that was just saved, made smaller. Whoever has no picture sees a name.
-pub(super) fn keep_picture(pictures: &Path, preset: &Path, (size, rgba8): ([u32; 2], &[u8])) {
-    let Some(path) = picture_of(pictures, preset) else { return };
+/// Keeps a picture of a preset, made smaller, and says where. Whoever has no picture sees a name.
+pub(super) fn keep_picture(pictures: &Path, preset: &Path, (size, rgba8): ([u32; 2], &[u8])) -> Option<PathBuf> {
+    let path = picture_of(pictures, preset)?;
     let (small, pixels) = shrunk(size, rgba8);
-    if std::fs::create_dir_all(pictures).is_ok() && !pixels.is_empty() {
-        // Without it the list shows the name alone.
-        let _ = write_png(&path, small, PngPixels::Rgb8(&pixels), &[]);
-    }
+    // Without it the list shows the name alone.
+    std::fs::create_dir_all(pictures).ok().filter(|()| !pixels.is_empty())?;
+    write_png(&path, small, PngPixels::Rgb8(&pixels), &[]).ok()?;
+    Some(path)
 }
 
 /// The picture with its longest side at most [`LONGEST_PX`], each pixel the mean of those it covers.
@@ -101,7 +101,8 @@ mod tests {
         let preset = folder.path().join("mine.ron");
         Preset::new("Mine", crate::scene::Scene::default()).save(&preset).expect("saved");
         let grey = [90_u8, 100, 110, 255].repeat(600 * 300);
-        keep_picture(&pictures, &preset, ([600, 300], &grey));
+        let kept = keep_picture(&pictures, &preset, ([600, 300], &grey));
+        assert!(kept.is_some_and(|path| path.is_file()), "it is there");
         let entries = library(folder.path(), &pictures).user;
         assert!(matches!(entries[0].thumbnail, Some(Thumbnail::File(_))), "{entries:?}");
         assert_eq!(shrunk([600, 300], &grey), ([200, 100], [90, 100, 110].repeat(200 * 100)));

@@ -1,6 +1,7 @@
 //! The window and its event loop: who is woken when, and what is drawn then.
 
 mod meter;
+mod pictures;
 mod still;
 mod truth;
 
@@ -10,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
 use winit::application::ApplicationHandler;
-use winit::event::{DeviceEvent, DeviceId, StartCause, WindowEvent};
+use winit::event::{DeviceEvent, DeviceId, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Fullscreen, Window, WindowId};
 
@@ -56,6 +57,7 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         is_working: true,
         metered: Instant::now(),
         is_metered: false,
+        small: pictures::SmallPictures::default(),
         given_up: None,
         failure: None,
     };
@@ -93,6 +95,8 @@ struct App {
     /// When the light of the picture was measured last, and whether that was of the picture that is shown.
     metered: Instant,
     is_metered: bool,
+    /// Pictures of presets that have none.
+    small: pictures::SmallPictures,
     /// Gives up the still that is being rendered.
     given_up: Option<Arc<AtomicBool>>,
     /// Why the program ends.
@@ -173,8 +177,6 @@ impl Live {
 }
 
 impl ApplicationHandler<Event> for App {
-    fn new_events(&mut self, _: &ActiveEventLoop, _: StartCause) {}
-
     fn resumed(&mut self, event_loop: &ActiveEventLoop) {
         if self.live.is_some() {
             return;
@@ -339,10 +341,11 @@ impl App {
             wake = sooner(wake, again);
         }
         let refined = self.refine(is_idle);
+        let later = self.make_small_pictures(is_idle && !refined.has_worked && self.given_up.is_none());
         if refined.has_worked {
             fastest = FASTEST_PANELS_BESIDE_WORK;
         }
-        if let Some(turn) = refined.wake {
+        for turn in refined.wake.into_iter().chain(later) {
             wake = sooner(wake, turn);
         }
         let live = self.live.as_mut()?;
@@ -512,12 +515,15 @@ impl App {
     /// Takes in what a thread found or did.
     fn report(&mut self, event_loop: &ActiveEventLoop, message: Message) {
         let session = &mut self.session;
-        if !matches!(message, Message::Progress(..) | Message::Still(_)) && self.given_up.is_none() {
+        if !matches!(message, Message::Progress(..) | Message::Still(_) | Message::SmallPicture(..))
+            && self.given_up.is_none()
+        {
             session.ui.busy = None;
         }
         match message {
             Message::Progress(share, begun) => self.hear_of_still(share, begun),
             Message::Still(result) => self.finish_still(result),
+            Message::SmallPicture(preset, picture) => self.take_small_picture(&preset, picture),
             Message::Picked(purpose, path) => session.picked(&purpose, &path),
             Message::NotPicked => {}
             Message::NoFileDialog => session.ui.toasts.error(

@@ -18,7 +18,7 @@ use crate::files::{About, Alpha, Content, CubeLayout, StillFile, files_of_still,
 use crate::gpu::Gpu;
 use crate::images::pattern::FramePattern;
 use crate::render::Renderer;
-use crate::scene::{LARGEST_WHOLE_PX, Preset, Quality};
+use crate::scene::{Frame, LARGEST_WHOLE_PX, Output, Preset, Quality, QualityLevel, UpdateFraction};
 
 /// What reaches the event loop from outside the window.
 #[derive(Debug)]
@@ -52,6 +52,8 @@ pub(super) enum Message {
     Progress(f32, Instant),
     /// A still is over: it was written, or given up, or why it could not be rendered.
     Still(Result<Option<PathBuf>, String>),
+    /// A small picture of a preset, size and bytes; `None` if it could not be made.
+    SmallPicture(PathBuf, Option<([u32; 2], Vec<u8>)>),
     /// A picture was written.
     Written(PathBuf),
     /// A picture could not be rendered or written.
@@ -60,6 +62,10 @@ pub(super) enum Message {
 
 /// A dialog that returns nothing faster than this was never on the screen.
 const FASTEST_CANCEL: Duration = Duration::from_millis(400);
+
+/// Size of a preset's picture, and how often it is asked whether it may go on.
+const SMALL_PX: [u32; 2] = [256, 144];
+const WAITS_FOR: Duration = Duration::from_millis(100);
 
 /// Starts threads that report to one event loop.
 #[derive(Clone, Debug)]
@@ -146,6 +152,31 @@ impl Worker {
         });
     }
 
+    /// Renders small pictures of presets, one after the other, and waits while `waits` says so. Tells of each; returns whether a
+    /// thread does.
+    pub(super) fn small_pictures(&self, gpu: &Gpu, (presets, waits): (Vec<PathBuf>, Arc<AtomicBool>)) -> bool {
+        let (gpu, proxy) = (gpu.clone(), self.proxy.clone());
+        let work = move || {
+            let mut renderer = Renderer::new(&gpu).ok();
+            for preset in presets {
+                let mut proceed = |_: f32| {
+                    while waits.load(Ordering::Relaxed) {
+                        std::thread::sleep(WAITS_FOR);
+                    }
+                    true
+                };
+                proceed(0.0);
+                // Whatever a file holds must not take the others' pictures away.
+                let drawn = catch_unwind(AssertUnwindSafe(|| small_picture(renderer.as_mut()?, &preset, &mut proceed)));
+                let picture = drawn.unwrap_or(None);
+                if proxy.send_event(Event::Worker(Message::SmallPicture(preset, picture))).is_err() {
+                    return;
+                }
+            }
+        };
+        std::thread::Builder::new().name("small pictures".to_owned()).spawn(work).is_ok()
+    }
+
     /// Renders a still and writes it. Setting what is returned gives it up.
     pub(super) fn still(&self, job: StillJob) -> Arc<AtomicBool> {
         let given_up = Arc::new(AtomicBool::new(false));
@@ -194,6 +225,20 @@ async fn dialog(purpose: &Browse, start: &Path) -> Option<rfd::FileHandle> {
 fn free_name(folder: &Path) -> PathBuf {
     let name = |number: u32| folder.join(format!("nephoscope-{number:04}.png"));
     (1..10_000).map(name).find(|path| !path.exists()).unwrap_or_else(|| name(10_000))
+}
+
+/// A picture of a preset for the gallery, as quickly as can be.
+fn small_picture(
+    renderer: &mut Renderer,
+    preset: &Path,
+    proceed: &mut dyn FnMut(f32) -> bool,
+) -> Option<([u32; 2], Vec<u8>)> {
+    let sky = crate::files::open(preset).ok()?;
+    let quality = Quality { pixel_samples: 1, update: UpdateFraction::Full, ..Quality::level(QualityLevel::Draft) };
+    let (scene, output) = (&sky.preset.scene, Output::Display);
+    let frame = Frame { scene, quality: &quality, size: SMALL_PX, time_secs: 0.0, output, window: None };
+    let still = renderer.still_while(&frame, proceed).ok()??;
+    renderer.rgba8_of(&still.into_display()).ok()
 }
 
 /// What the file of a still holds.

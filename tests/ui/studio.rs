@@ -412,6 +412,11 @@ fn presets_that_others_put_into_the_folder_are_listed() {
     editor.harness.state_mut().notice_presets();
     let listed = |editor: &Editor| editor.harness.state().ui.library.user.iter().any(|entry| entry.source == path);
     assert!(listed(&editor), "it is there");
+    let has_picture = |editor: &Editor| editor.harness.state().ui.library.user[0].thumbnail.is_some();
+    assert!(!has_picture(&editor));
+    editor.harness.state_mut().note_picture(&path, ([16, 9], &[120; 16 * 9 * 4]));
+    editor.harness.run();
+    assert!(has_picture(&editor), "a picture that was made later");
     std::fs::remove_file(&path).expect("removed");
     // File systems count time in steps.
     std::thread::sleep(std::time::Duration::from_millis(20));

@@ -136,6 +136,11 @@ impl Truths {
         self.schedule.touch(now);
     }
 
+    /// When something was touched or changed last.
+    pub(super) fn disturbed(&self) -> Instant {
+        self.schedule.disturbed()
+    }
+
     /// Takes a turn, once the window's own picture is finished.
     pub(super) fn turn(&mut self, renderer: &mut Renderer, wishes: Wishes) -> Result<Outcome, RenderError> {
         let now = Instant::now();

@@ -69,6 +69,11 @@ impl Schedule {
         self.disturbed = now;
     }
 
+    /// When something was touched or changed last.
+    pub(super) fn disturbed(&self) -> Instant {
+        self.disturbed
+    }
+
     /// The picture has changed: nothing of what was finished counts.
     pub(super) fn restart(&mut self, now: Instant) {
         self.disturbed = now;
