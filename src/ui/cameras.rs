@@ -5,7 +5,10 @@ use egui::{Key, Modifiers, Ui};
 use super::row;
 use crate::app::action::Action;
 use crate::app::document::Document;
-use crate::scene::{Bookmark, MAX_BOOKMARKS};
+use crate::scene::{Bookmark, Camera, MAX_BOOKMARKS};
+
+/// How far ahead the clouds are that are looked at.
+const AHEAD_M: f32 = 5000.0;
 
 const KEYS: [Key; MAX_BOOKMARKS] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
@@ -49,6 +52,16 @@ pub(super) fn menu(ui: &mut Ui, document: &Document, actions: &mut Vec<Action>) 
         actions.extend(kept_with_this(document));
         ui.close();
     }
+}
+
+/// The camera where it is, level, and looking at the middle of what clouds there are, as they stand some way ahead.
+pub(super) fn at_clouds(document: &Document) -> Camera {
+    let scene = &document.preset().scene;
+    let low = scene.visible_layers().map(|layer| layer.base_m).fold(f32::INFINITY, f32::min);
+    let high = scene.visible_layers().map(|layer| layer.top_m).fold(0.0, f32::max);
+    let middle = if low <= high { 0.5 * (low + high) } else { scene.camera.height_m };
+    let pitch_deg = (middle - scene.camera.height_m).atan2(AHEAD_M).to_degrees();
+    Camera { pitch_deg, roll_deg: 0.0, ..scene.camera.clone() }
 }
 
 /// The list with the camera as it is now; `None` if it is full.

@@ -59,6 +59,8 @@ pub enum Command {
     Timeline,
     /// Camera back to the preset's.
     ResetCamera,
+    /// Camera level and towards the clouds.
+    FrameClouds,
     /// Keep the camera with the sky.
     KeepCamera,
     /// Directions over the picture on or off.
@@ -100,7 +102,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 43] = [
+const TABLE: [(Command, Modifiers, Key, &str); 44] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -127,6 +129,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 43] = [
     (Command::ResetTime, CTRL_SHIFT, Key::Home, "Time back to 0"),
     (Command::Timeline, Modifiers::COMMAND, Key::T, "Timeline"),
     (Command::ResetCamera, Modifiers::NONE, Key::Home, "Camera back to the preset’s"),
+    (Command::FrameClouds, Modifiers::NONE, Key::F, "Look at the clouds, level"),
     (Command::KeepCamera, Modifiers::COMMAND, Key::K, "Keep this camera"),
     (Command::Guides, Modifiers::NONE, Key::G, "Guides: horizon, compass, thirds"),
     (Command::Region, Modifiers::COMMAND, Key::B, "Render a region"),
@@ -236,6 +239,7 @@ impl Command {
             Self::Panel => state.show_panel = !state.show_panel,
             Self::Histogram => state.histogram.is_open = !state.histogram.is_open,
             Self::FalseColour => actions.push(state.histogram.toggled(document)),
+            Self::FrameClouds => actions.push(Action::MoveCamera(super::cameras::at_clouds(document))),
             Self::KeepCamera => match super::cameras::kept_with_this(document) {
                 Some(action) => {
                     actions.push(action);
@@ -243,15 +247,7 @@ impl Command {
                 }
                 None => state.toasts.error("Nine cameras are kept already; forget one first (View, Cameras)"),
             },
-            Self::Region => {
-                let viewport = &mut state.viewport;
-                if viewport.region.take().is_none() && !std::mem::take(&mut viewport.is_choosing) {
-                    viewport.is_choosing = true;
-                    state.toasts.info(
-                        "Drag a rectangle over the picture; Ctrl+B again draws all of it. Streaks of light need the whole picture",
-                    );
-                }
-            }
+            Self::Region => choose_region(state),
             Self::Guides => state.viewport.has_guides = !state.viewport.has_guides,
             Self::Timeline => state.timeline.is_open = !state.timeline.is_open,
             Self::Overlay => state.show_overlay = !state.show_overlay,
@@ -327,6 +323,7 @@ impl Command {
             Self::Inspect
                 | Self::Histogram
                 | Self::Guides
+                | Self::FrameClouds
                 | Self::PlayPause
                 | Self::ResetCamera
                 | Self::ResetTime
@@ -334,6 +331,17 @@ impl Command {
                 | Self::Darker
                 | Self::HideAll
         )
+    }
+}
+
+/// Draws all of the picture again, or lets the next drag choose a region.
+fn choose_region(state: &mut State) {
+    let viewport = &mut state.viewport;
+    if viewport.region.take().is_none() && !std::mem::take(&mut viewport.is_choosing) {
+        viewport.is_choosing = true;
+        state.toasts.info(
+            "Drag a rectangle over the picture; Ctrl+B again draws all of it. Streaks of light need the whole picture",
+        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! The bar at the top: menus, time, and the document's name.
 
 use egui::containers::menu::{MenuConfig, SubMenuButton};
-use egui::{Align, Layout, PopupCloseBehavior, Theme, Ui};
+use egui::{Align, Layout, PopupCloseBehavior, ThemePreference, Ui};
 
 use super::{Busy, Command, State, row};
 use crate::app::action::{Action, Request};
@@ -80,7 +80,7 @@ fn menus(
                 Command::Histogram,
             ][..],
             &[Command::HideAll, Command::FullScreen, Command::Guides, Command::Region],
-            &[Command::ResetCamera, Command::Brighter, Command::Darker, Command::FalseColour],
+            &[Command::ResetCamera, Command::FrameClouds, Command::Brighter, Command::Darker, Command::FalseColour],
             &[Command::Refine, Command::Keep, Command::Compare],
         ];
         entries(ui, (state, document), &groups, &mut chosen);
@@ -156,8 +156,13 @@ fn recent(ui: &mut Ui, preferences: &Preferences, actions: &mut Vec<Action>) {
 
 pub(super) fn theme_and_scale(ui: &mut Ui) {
     ui.horizontal(|ui| {
-        for (theme, title) in [(Theme::Light, "Light"), (Theme::Dark, "Dark")] {
-            if ui.selectable_label(ui.ctx().theme() == theme, title).clicked() {
+        let chosen = ui.ctx().options(|options| options.theme_preference);
+        for (theme, title) in [
+            (ThemePreference::Light, "Light"),
+            (ThemePreference::Dark, "Dark"),
+            (ThemePreference::System, "As the system"),
+        ] {
+            if ui.selectable_label(chosen == theme, title).clicked() {
                 ui.ctx().set_theme(theme);
             }
         }

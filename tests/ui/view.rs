@@ -95,6 +95,20 @@ fn cameras_are_kept_named_gone_to_and_forgotten() {
 }
 
 #[test]
+fn the_clouds_are_looked_at_from_below_and_from_above() {
+    let mut editor = Editor::new();
+    for (height_m, looks_up) in [(20.0, true), (12_000.0, false)] {
+        let begun = editor.scene().camera.clone();
+        let camera = nephoscope::scene::Camera { height_m, roll_deg: 30.0, pitch_deg: 80.0, ..begun };
+        editor.harness.state_mut().perform(Action::MoveCamera(camera.clone()));
+        editor.press(egui::Key::F);
+        let seen = &editor.scene().camera;
+        assert_eq!((seen.pitch_deg > 0.0, seen.roll_deg, seen.height_m), (looks_up, 0.0, height_m));
+        assert!(seen.pitch_deg.abs() < 75.0, "{}", seen.pitch_deg);
+    }
+}
+
+#[test]
 fn preferences_and_help_open_and_first_steps_are_told_once() {
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
         let mut editor = Editor::sized([800.0, 600.0]);
