@@ -55,15 +55,6 @@ impl Alpha {
 }
 
 impl Content {
-    /// The ending of such a file's name.
-    pub fn ending(self) -> &'static str {
-        match self {
-            Self::Display | Self::Display16 => "png",
-            Self::Radiance => "hdr",
-            Self::Linear(_) | Self::Layers(_) | Self::CloudsAlone(..) => "exr",
-        }
-    }
-
     /// What the renderer is asked for.
     pub fn output(self) -> Output {
         match self {
