@@ -115,12 +115,12 @@ appears "$folder/work/evening.ron"
 titled "Towering cumulus –"
 
 keys ctrl+e
-click 585 323 # EXR, layers of light
-click 594 371 # Panorama
-click 591 395 # 2K
-click 600 462 # Draft
+click 585 294 # EXR, layers of light
+click 594 354 # Panorama
+click 591 378 # 2K
+click 600 445 # Draft
 shot 07_export 1
-click 437 537 # Export
+click 437 538 # Export
 shot 08_rendering 3
 appears "$folder/work/towering-cumulus.exr"
 

@@ -435,6 +435,18 @@ fn pictures_go_out_in_all_formats_and_shapes() {
     let args = ["pano", "fair_weather", "-o", "all.hdr", "--size", "64x32", "--quality", "draft"];
     renders(&folder, &args);
     assert!(std::fs::read(there("all.hdr")).expect("written").starts_with(b"#?RADIANCE"));
+    // The sun, as it is and as other programs can bear it; the sky's name in the file's.
+    let brightest = |name: &str, more: &[&str]| {
+        let mut args = vec!["pano", "fair_weather", "-o", name, "--size", "256x128", "--quality", "draft"];
+        args.extend(more);
+        renders(&folder, &args);
+        let light = nephoscope::images::map::read_exr(&there(&name.replace("{name}", "fair-weather"))).expect("sound");
+        light.rgba.iter().map(|pixel| pixel[0].max(pixel[1]).max(pixel[2])).fold(0.0, f32::max)
+    };
+    let plain = brightest("{name}.exr", &[]);
+    let soft = brightest("soft.exr", &["--brightest", "20"]);
+    assert!(plain > 100.0 && soft > 10.0 && soft <= 20.0, "{plain} became {soft}");
+    refuses(&folder, &["pano", "fair_weather", "-o", "a.exr", "--brightest", "0"], 2, &["above 0"]);
     let cube = ["--projection", "cube", "--size", "16x16", "--quality", "draft"];
     let output = renders(&folder, &[&["pano", "fair_weather", "-o", "sky.exr"][..], &cube].concat());
     assert!(stdout(&output).contains("sky.nz.exr 16x16"), "{}", stdout(&output));

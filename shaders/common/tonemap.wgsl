@@ -40,6 +40,17 @@ fn khronos_neutral(light: vec3f) -> vec3f {
   return mix(colour * compressed / peak, vec3f(compressed), g);
 }
 
+// The Academy's reference and output transforms for sRGB, fitted by Stephen Hill (BakingLab, 2016), after a gain of 1/0.6
+// that most programs put before it, so that middle grey stays near its place. It bends hues as film does.
+fn aces_fit(light: vec3f) -> vec3f {
+  let into = mat3x3f(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
+  let back = mat3x3f(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
+  // Beyond this the curve has long reached white, and squares would overflow.
+  let v = into * min(light / 0.6, vec3f(1e6));
+  let curve = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
+  return clamp(back * curve, vec3f(0.0), vec3f(1.0));
+}
+
 // AgX by Troy Sobotka, with the polynomial fit of its curve by Benjamin Wrensch ("Minimal AgX implementation", 2023).
 // The result is display-encoded.
 fn agx(light: vec3f, contrast: f32, saturation: f32) -> vec3f {

@@ -14,6 +14,8 @@
 @group(2) @binding(0) var display_out: texture_storage_2d<rgba8unorm, write>;
 
 override TONE_MAP: u32 = 0u;
+// 1 draws stripes over what clips.
+override STRIPES: u32 = 0u;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -33,6 +35,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     case 3u: {
       colour = false_colour(light);
     }
+    case 4u: {
+      colour = srgb_encoded(graded(aces_fit(light), display.contrast, display.saturation));
+    }
     default: {
       colour = srgb_encoded(clamp(graded(light, display.contrast, display.saturation), vec3f(0.0), vec3f(1.0)));
     }
@@ -42,6 +47,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   textureStore(shown_out, pixel, shown);
   colour = srgb_encoded(shown.rgb);
 #endif
+  if (STRIPES == 1u && any(colour >= vec3f(254.5 / 255.0))) {
+    colour = select(colour, vec3f(0.85, 0.0, 0.35), (pixel.x + pixel.y) / 4u % 2u == 0u);
+  }
   let noise = textureLoad(blue_noise, pixel % textureDimensions(blue_noise), 0).x;
   let dithered = clamp(colour, vec3f(0.0), vec3f(1.0)) * 255.0 + noise;
   textureStore(display_out, pixel, vec4f(floor(dithered) / 255.0, 1.0));

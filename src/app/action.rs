@@ -107,6 +107,20 @@ pub enum Action {
     Ask(Request),
 }
 
+/// What becomes of a still, or of a sequence, that is being rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Steering {
+    /// It goes on.
+    On,
+    /// It waits; the processors are free meanwhile.
+    Wait,
+    /// It ends soon and is written: a picture with the samples of each pixel that it has, a sequence after the frame that is
+    /// being made.
+    End,
+    /// It is given up.
+    GiveUp,
+}
+
 /// A wish that the document alone cannot fulfil.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
@@ -132,10 +146,10 @@ pub enum Request {
     Snapshot,
     /// Render a still and write it.
     Export(Export),
-    /// Give up the still that is being rendered.
-    GiveUp,
-    /// Take or refuse the document that a crash left behind.
-    Recover(bool),
+    /// What becomes of the still that is being rendered.
+    Steer(Steering),
+    /// Take one of the copies that a crash left behind, the newest being 0, or none of them.
+    Recover(Option<usize>),
     /// Take one part of another sky.
     TakeOver {
         /// A preset's file or the short name of a built-in one.
@@ -314,6 +328,8 @@ pub struct Export {
     pub level: Option<QualityLevel>,
     /// Its frames, if it is a sequence; then the path has a run of `#`.
     pub frames: Option<Sequence>,
+    /// Where light is compressed to, in units of the file; `None` where it ends nowhere.
+    pub brightest: Option<f32>,
     /// The part of it that is rendered: left, top, right and bottom, 0 to 1.
     pub region: Option<[f32; 4]>,
     /// Where it goes.
@@ -385,7 +401,7 @@ impl Request {
             Self::CopySystem => "copy what the machine is",
             Self::Snapshot => "snapshot",
             Self::Export(_) => "export",
-            Self::GiveUp => "give up",
+            Self::Steer(_) => "steer a still",
             Self::Recover(_) => "recover",
             Self::TakeOver { .. } => "take over",
             Self::Morph(_) => "morph",

@@ -23,8 +23,25 @@ pub(super) struct Recovery {
     _lock: Option<File>,
 }
 
+/// How many copies a window keeps: should the newest be what makes the program crash, an older one is there.
+const KEPT: usize = 5;
+
 fn copy_of(folder: &Path, window: u32) -> PathBuf {
     folder.join(if window == 0 { "recovery.ron".to_owned() } else { format!("recovery-{window}.ron") })
+}
+
+/// A window's copies from the newest, whether they are there or not: `recovery.ron`, `recovery.1.ron` and so on.
+fn copies(newest: &Path) -> [PathBuf; KEPT] {
+    std::array::from_fn(|age| if age == 0 { newest.to_owned() } else { newest.with_extension(format!("{age}.ron")) })
+}
+
+/// What an earlier run left.
+#[derive(Debug, Default)]
+pub(super) struct Left {
+    /// What was kept and how long ago, newest first.
+    pub(super) copies: Vec<(Preset, Duration)>,
+    /// What is wrong with copies that cannot be read, and where they are now.
+    pub(super) damage: Vec<String>,
 }
 
 /// The lock of a window's copy, and whether another window holds it. Where there are no locks nobody holds one.
@@ -35,30 +52,46 @@ fn lock_of(folder: &Path, window: u32) -> (Option<File>, bool) {
 }
 
 impl Recovery {
-    /// Copies go into `folder`; returns what an earlier run left there, or why it cannot be read. A damaged copy is put aside:
-    /// somebody may still find something in it. Copies of windows that are open are not touched.
-    pub(super) fn open(folder: &Path) -> (Self, Option<Result<Preset, String>>) {
+    /// Copies go into `folder`; returns what an earlier run left there. A damaged copy is put aside: somebody may still find
+    /// something in it. Copies of windows that are open are not touched.
+    pub(super) fn open(folder: &Path) -> (Self, Left) {
         // A folder that cannot be made has no copies, and gets none.
         let _ = std::fs::create_dir_all(folder);
         let mut own = None;
         for window in 0..MOST_WINDOWS {
             let path = copy_of(folder, window);
-            if own.is_some() && !path.exists() {
+            let is_left = copies(&path).iter().any(|copy| copy.exists());
+            if own.is_some() && !is_left {
                 continue;
             }
             let (lock, is_held) = lock_of(folder, window);
             if is_held {
                 continue;
             }
-            if path.exists() {
-                // A copy that nobody holds: that of a window that has crashed.
-                let left = Self::read(folder, &path);
-                return (Self { path, written: None, last: Instant::now(), _lock: lock }, Some(left));
+            if is_left {
+                // Copies that nobody holds: those of a window that has crashed.
+                let left = Self::read_all(folder, &path);
+                return (Self { path, written: None, last: Instant::now(), _lock: lock }, left);
             }
             own.get_or_insert((path, lock));
         }
         let (path, lock) = own.unwrap_or_else(|| (copy_of(folder, 0), None));
-        (Self { path, written: None, last: Instant::now(), _lock: lock }, None)
+        (Self { path, written: None, last: Instant::now(), _lock: lock }, Left::default())
+    }
+
+    fn read_all(folder: &Path, newest: &Path) -> Left {
+        let mut left = Left::default();
+        for copy in copies(newest).iter().filter(|copy| copy.exists()) {
+            let written = copy.metadata().and_then(|metadata| metadata.modified()).ok();
+            match Self::read(folder, copy) {
+                // A clock that was set back makes a copy new.
+                Ok(preset) => {
+                    left.copies.push((preset, written.and_then(|at| at.elapsed().ok()).unwrap_or_default()));
+                }
+                Err(damage) => left.damage.push(damage),
+            }
+        }
+        left
     }
 
     fn read(folder: &Path, path: &Path) -> Result<Preset, String> {
@@ -90,6 +123,12 @@ impl Recovery {
                 self.clear();
             }
         } else if self.written.as_ref() != Some(document.preset()) {
+            // Each grows older by one up to the first gap, or over the oldest. What cannot be moved is not worth a word here.
+            let aged = copies(&self.path);
+            let gap = aged.iter().position(|copy| !copy.exists()).unwrap_or(KEPT - 1);
+            for (younger, older) in aged[..gap].iter().zip(&aged[1..=gap]).rev() {
+                let _ = std::fs::rename(younger, older);
+            }
             let folder_made = self.path.parent().is_some_and(|folder| std::fs::create_dir_all(folder).is_ok());
             if folder_made && document.preset().save(&self.path).is_ok() {
                 self.written = Some(document.preset().clone());
@@ -97,10 +136,12 @@ impl Recovery {
         }
     }
 
-    /// Takes the copy away: the work was saved or given up.
+    /// Takes the copies away: the work was saved or given up.
     pub(super) fn clear(&self) {
-        // It may never have been written.
-        let _ = std::fs::remove_file(&self.path);
+        for copy in copies(&self.path) {
+            // It may never have been written.
+            let _ = std::fs::remove_file(copy);
+        }
     }
 
     /// Time until the next look, for the event loop; `None` if it would change nothing, so that an idle window sleeps.
@@ -121,7 +162,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let state = folder.path().join("state");
         let (mut recovery, left) = Recovery::open(&state);
-        assert!(left.is_none(), "nothing yet");
+        assert!(left.copies.is_empty(), "nothing yet");
         let mut document = Document::new(Preset::default(), Quality::default());
         document.apply(&Action::Rename("Storm".to_owned()));
         recovery.keep(&document);
@@ -133,7 +174,35 @@ mod tests {
         document.mark_saved(folder.path().join("storm.ron"));
         recovery.keep(&document);
         drop(recovery);
-        assert!(Recovery::open(&state).1.is_none(), "saved work needs no copy");
+        assert!(Recovery::open(&state).1.copies.is_empty(), "saved work needs no copy");
+    }
+
+    fn names(left: &Left) -> Vec<&str> {
+        left.copies.iter().map(|(preset, _)| preset.name.as_str()).collect()
+    }
+
+    #[test]
+    fn the_last_five_states_are_there_and_a_damaged_one_does_not_hide_the_others() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let (mut recovery, _) = Recovery::open(folder.path());
+        let mut document = Document::new(Preset::default(), Quality::default());
+        for name in ["1", "2", "3", "4", "5", "6", "7"] {
+            document.apply(&Action::Rename(name.to_owned()));
+            recovery.keep(&document);
+            recovery.keep(&document);
+        }
+        drop(recovery);
+        std::fs::write(folder.path().join("recovery.ron"), "(").expect("written");
+        let (mut recovery, left) = Recovery::open(folder.path());
+        assert_eq!(names(&left), ["6", "5", "4", "3"], "newest first");
+        assert_eq!(left.damage.len(), 1, "{:?}", left.damage);
+        // Taking one of them up pushes none out that was offered.
+        recovery.keep(&document);
+        drop(recovery);
+        let (recovery, left) = Recovery::open(folder.path());
+        assert_eq!(names(&left), ["7", "6", "5", "4", "3"]);
+        recovery.clear();
+        assert!(Recovery::open(folder.path()).1.copies.is_empty(), "all are gone");
     }
 
     #[test]
@@ -141,7 +210,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         std::fs::write(folder.path().join("recovery.ron"), "(version: 2, scene: (lay").expect("written");
         let (mut recovery, left) = Recovery::open(folder.path());
-        let said = left.expect("something was there").expect_err("it is no preset");
+        let said = left.damage.concat();
         assert!(said.contains("recovery-damaged-1.ron"), "{said}");
         let mut document = Document::new(Preset::default(), Quality::default());
         document.apply(&Action::Rename("Next".to_owned()));
@@ -149,7 +218,7 @@ mod tests {
         let aside = std::fs::read_to_string(folder.path().join("recovery-damaged-1.ron")).expect("kept");
         assert!(aside.ends_with("(lay"), "as it was");
         drop(recovery);
-        assert_eq!(Recovery::open(folder.path()).1.expect("a copy").expect("a sound one").name, "Next");
+        assert_eq!(names(&Recovery::open(folder.path()).1), ["Next"]);
     }
 
     #[test]
@@ -161,17 +230,17 @@ mod tests {
             document
         };
         let (mut one, left) = Recovery::open(folder.path());
-        assert!(left.is_none(), "nothing was left");
+        assert!(left.copies.is_empty(), "nothing was left");
         one.keep(&edited("one"));
         let (mut two, left) = Recovery::open(folder.path());
-        assert!(left.is_none(), "the first window is open");
+        assert!(left.copies.is_empty(), "the first window is open");
         two.keep(&edited("two"));
         // The second window crashes: its lock goes, its copy stays.
         drop(two);
         let (three, left) = Recovery::open(folder.path());
-        assert_eq!(left.expect("a copy").expect("sound").name, "two");
+        assert_eq!(names(&left), ["two"]);
         drop((one, three));
         let (_, left) = Recovery::open(folder.path());
-        assert_eq!(left.expect("a copy").expect("sound").name, "one");
+        assert_eq!(names(&left), ["one"]);
     }
 }

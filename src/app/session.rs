@@ -1,7 +1,7 @@
 //! The editor without its window: document, panels, and the rules about losing changes. Tests drive this.
 
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::time::{Duration, SystemTime};
 
 use super::action::{Action, Answer, Browse, Part, Request};
 use super::document::Document;
@@ -71,7 +71,7 @@ pub struct Session {
     /// What waits for the answer about unsaved changes.
     pending: Option<Request>,
     /// What a crash left behind, until the user decides.
-    recovered: Option<Preset>,
+    recovered: Vec<Preset>,
     /// When the folder of presets had changed last when it was read.
     listed: Option<SystemTime>,
 }
@@ -89,12 +89,19 @@ impl Session {
         let ui = ui::State { library, ..ui::State::default() };
         let preferences = Preferences::load(&folders.state.join(PREFERENCES));
         let kept = preferences.clone();
-        Self { document, ui, folders, preferences, kept, pending: None, recovered: None, warned_of: None, listed }
+        Self { document, ui, folders, preferences, kept, pending: None, recovered: Vec::new(), warned_of: None, listed }
     }
 
     /// Whether the user has not decided yet about what a crash left behind.
     pub fn has_undecided_recovery(&self) -> bool {
-        self.recovered.is_some()
+        !self.recovered.is_empty()
+    }
+
+    /// The window's title: how much of a still is done, and what is open.
+    pub fn title(&self) -> String {
+        let done = self.ui.busy.as_ref().and_then(|busy| busy.progress);
+        let done = done.map_or_else(String::new, |(share, _)| format!("{:.0} % – ", share * 100.0));
+        format!("{done}{} – Nephoscope", self.document.title())
     }
 
     /// Lets go of textures, as after another device was opened: they are made again when they are seen.
@@ -103,10 +110,13 @@ impl Session {
         self.ui.snapshots.reload(context);
     }
 
-    /// Asks whether to take what a crash left behind.
-    pub fn offer_recovery(&mut self, preset: Preset) {
-        self.ui.dialog = Some(Dialog::Recover { name: preset.name.clone() });
-        self.recovered = Some(preset);
+    /// Asks whether to take one of the copies that a crash left behind, newest first, with the time that has passed since.
+    pub fn offer_recovery(&mut self, copies: Vec<(Preset, Duration)>) {
+        let ages = copies.iter().map(|(preset, age)| (preset.name.clone(), *age)).collect();
+        self.recovered = copies.into_iter().map(|(preset, _)| preset).collect();
+        if !self.recovered.is_empty() {
+            self.ui.dialog = Some(Dialog::Recover { copies: ages, chosen: 0 });
+        }
     }
 
     /// Draws one frame of the panels, carries out what the user wants, and returns what only the window can do.
@@ -199,7 +209,8 @@ impl Session {
             }
             Request::Answer(answer) => self.answer(answer),
             Request::Recover(taken) => {
-                if let Some(preset) = self.recovered.take().filter(|_| taken) {
+                let copies = std::mem::take(&mut self.recovered);
+                if let Some(preset) = taken.and_then(|index| copies.into_iter().nth(index)) {
                     let mut recovered = Document::new(preset, self.document.quality().clone());
                     recovered.mark_unsaved();
                     self.replace_document(recovered, "recover");
@@ -220,7 +231,7 @@ impl Session {
             | Request::CopyPicture
             | Request::CopySystem
             | Request::Export(_)
-            | Request::GiveUp
+            | Request::Steer(_)
             | Request::Lab(_)
             | Request::ToggleFullScreen => Some(request),
         }

@@ -6,7 +6,6 @@ mod still;
 mod truth;
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use anyhow::Context as _;
@@ -22,7 +21,7 @@ use super::lab::{Lab, News};
 use super::recovery::Recovery;
 use super::surface::WindowSurface;
 use super::viewport::{Step, Viewport};
-use super::worker::{Event, Message, StillJob, Worker};
+use super::worker::{Event, Helm, Message, StillJob, Worker};
 use super::{Action, NoDisplay, Session, about, crash};
 use crate::files::KeptPrograms;
 use crate::gpu::{AdapterChoice, Gpu};
@@ -58,7 +57,7 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
         metered: Instant::now(),
         is_metered: false,
         small: pictures::SmallPictures::default(),
-        given_up: None,
+        helm: None,
         failure: None,
     };
     if let Some(report) = crash::unseen(&app.session.folders.state) {
@@ -67,11 +66,8 @@ pub(super) fn run(session: Session, adapter: AdapterChoice) -> anyhow::Result<()
             .toasts
             .error(format!("The last run ended by a crash; what is known of it is in {}", report.display()));
     }
-    match left {
-        Some(Ok(preset)) => app.session.offer_recovery(preset),
-        Some(Err(said)) => app.session.ui.toasts.error(said),
-        None => {}
-    }
+    left.damage.into_iter().for_each(|said| app.session.ui.toasts.error(said));
+    app.session.offer_recovery(left.copies);
     event_loop.run_app(&mut app).context("the window's event loop failed")?;
     app.failure.map_or(Ok(()), Err)
 }
@@ -97,8 +93,8 @@ struct App {
     is_metered: bool,
     /// Pictures of presets that have none.
     small: pictures::SmallPictures,
-    /// Gives up the still that is being rendered.
-    given_up: Option<Arc<AtomicBool>>,
+    /// Steers the still that is being rendered.
+    helm: Option<Arc<Helm>>,
     /// Why the program ends.
     failure: Option<anyhow::Error>,
 }
@@ -307,7 +303,7 @@ impl App {
         if self.session.ui.viewport.rect.width() >= 1.0 && self.session.ui.viewport.rect.height() >= 1.0 {
             self.session.ui.lab.view.governor = live.viewport.govern(&self.session.ui.lab);
             let region = self.session.ui.viewport.region;
-            match live.viewport.step(&self.session.document, (size, region), self.session.ui.forced) {
+            match live.viewport.step(&self.session.document, (size, region), self.session.ui.forced()) {
                 Ok(Step::Idle) => is_idle = true,
                 Ok(Step::Busy) => {
                     fastest = FASTEST_PANELS_BESIDE_WORK;
@@ -341,7 +337,7 @@ impl App {
             wake = sooner(wake, again);
         }
         let refined = self.refine(is_idle);
-        let later = self.make_small_pictures(is_idle && !refined.has_worked && self.given_up.is_none());
+        let later = self.make_small_pictures(is_idle && !refined.has_worked && self.helm.is_none());
         if refined.has_worked {
             fastest = FASTEST_PANELS_BESIDE_WORK;
         }
@@ -395,7 +391,7 @@ impl App {
         }
         live.drawn = Instant::now();
         live.viewport.statistics.add_panel((live.drawn - begun).as_secs_f64() * 1000.0);
-        let title = format!("{} – Nephoscope", self.session.document.title());
+        let title = self.session.title();
         if title != live.title {
             live.window.set_title(&title);
             live.title = title;
@@ -436,10 +432,10 @@ impl App {
                 }
             }
             Request::Export(export) => self.render_still(export),
-            Request::GiveUp => self.give_up_still(),
+            Request::Steer(steering) => self.steer_still(steering),
             Request::Lab(wish) => self.measure(wish),
-            Request::Recover(true) => self.recovery.keep(&self.session.document),
-            Request::Recover(false) => self.recovery.clear(),
+            Request::Recover(Some(_)) => self.recovery.keep(&self.session.document),
+            Request::Recover(None) => self.recovery.clear(),
             Request::ToggleFullScreen => {
                 let Some(live) = &self.live else { return };
                 let full = live.window.fullscreen().is_none().then_some(Fullscreen::Borderless(None));
@@ -475,9 +471,9 @@ impl App {
     fn browse(&mut self, purpose: Browse) {
         let path = self.session.document.path().and_then(|path| path.parent());
         let start = path.unwrap_or(&self.session.folders.presets).to_owned();
-        if self.given_up.is_none() {
+        if self.helm.is_none() {
             let text = "Waiting for the file dialog…".to_owned();
-            self.session.ui.busy = Some(Busy { text, progress: None, can_stop: false });
+            self.session.ui.busy = Some(Busy { text, progress: None, steering: None, end: "" });
         }
         self.worker.browse(purpose, &start);
     }
@@ -502,6 +498,7 @@ impl App {
                         shape: Shape::Camera,
                         level: None,
                         frames: None,
+                        brightest: None,
                         region: None,
                         path: self.session.folders.pictures.clone(),
                     },
@@ -516,7 +513,7 @@ impl App {
     fn report(&mut self, event_loop: &ActiveEventLoop, message: Message) {
         let session = &mut self.session;
         if !matches!(message, Message::Progress(..) | Message::Still(_) | Message::SmallPicture(..))
-            && self.given_up.is_none()
+            && self.helm.is_none()
         {
             session.ui.busy = None;
         }

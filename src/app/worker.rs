@@ -3,21 +3,21 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use winit::event_loop::EventLoopProxy;
 
-use super::action::{Browse, Export, Shape, Still};
+use super::action::{Browse, Export, Shape, Steering, Still};
 use super::lab::News;
 use super::truth::{CompareJob, Compared};
 use super::viewport::pixels_of;
 use crate::export::exr::ExrOptions;
-use crate::files::{About, Alpha, Content, CubeLayout, StillFile, files_of_still, save_png};
+use crate::files::{About, Alpha, Content, CubeLayout, StillFile, files_of_still, named, save_png};
 use crate::gpu::Gpu;
 use crate::images::pattern::FramePattern;
-use crate::render::Renderer;
+use crate::render::{Proceed, Renderer};
 use crate::scene::{Frame, LARGEST_WHOLE_PX, Output, Preset, Quality, QualityLevel, UpdateFraction};
 
 /// What reaches the event loop from outside the window.
@@ -163,7 +163,7 @@ impl Worker {
                     while waits.load(Ordering::Relaxed) {
                         std::thread::sleep(WAITS_FOR);
                     }
-                    true
+                    Proceed::On
                 };
                 proceed(0.0);
                 // Whatever a file holds must not take the others' pictures away.
@@ -177,16 +177,23 @@ impl Worker {
         std::thread::Builder::new().name("small pictures".to_owned()).spawn(work).is_ok()
     }
 
-    /// Renders a still and writes it. Setting what is returned gives it up.
-    pub(super) fn still(&self, job: StillJob) -> Arc<AtomicBool> {
-        let given_up = Arc::new(AtomicBool::new(false));
-        let (asked, proxy, begun) = (Arc::clone(&given_up), self.proxy.clone(), Instant::now());
+    /// Renders a still and writes it, as what is returned steers it.
+    pub(super) fn still(&self, job: StillJob) -> Arc<Helm> {
+        let helm = Arc::new(Helm::default());
+        let (hand, proxy, mut begun) = (Arc::clone(&helm), self.proxy.clone(), Instant::now());
         let failed = self.proxy.clone();
         let work = move || {
             let mut proceed = |share| {
+                // What is left is guessed from the time that was worked.
+                begun += hand.wait();
                 // As above: whoever does not wait has closed the window.
                 let is_heard = proxy.send_event(Event::Worker(Message::Progress(share, begun))).is_ok();
-                is_heard && !asked.load(Ordering::Relaxed)
+                match hand.steering() {
+                    _ if !is_heard => Proceed::No,
+                    Steering::On | Steering::Wait => Proceed::On,
+                    Steering::End => Proceed::WithWhatIsDone,
+                    Steering::GiveUp => Proceed::No,
+                }
             };
             // Whatever happens, the window has to hear that it is over.
             let outcome = catch_unwind(AssertUnwindSafe(|| still(&job, &mut proceed)));
@@ -194,7 +201,7 @@ impl Worker {
                 Ok(result) => result.map_err(|error| format!("{error:#}")),
                 Err(_) => Err("the still could not be rendered: its thread panicked".to_owned()),
             };
-            let path = job.export.path;
+            let path = named(&job.export.path, &job.preset);
             let _ = proxy
                 .send_event(Event::Worker(Message::Still(is_written.map(|is_written| is_written.then_some(path)))));
         };
@@ -202,7 +209,46 @@ impl Worker {
             let said = Err(format!("no thread for a still: {error}"));
             let _ = failed.send_event(Event::Worker(Message::Still(said)));
         }
-        given_up
+        helm
+    }
+}
+
+/// Steers a still from another thread.
+#[derive(Debug)]
+pub(super) struct Helm {
+    steering: Mutex<Steering>,
+    turned: Condvar,
+}
+
+impl Default for Helm {
+    fn default() -> Self {
+        Self { steering: Mutex::new(Steering::On), turned: Condvar::new() }
+    }
+}
+
+impl Helm {
+    fn lock(&self) -> MutexGuard<'_, Steering> {
+        // Whoever panicked while turning it has set it, or has not.
+        self.steering.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What becomes of the still.
+    pub(super) fn steering(&self) -> Steering {
+        *self.lock()
+    }
+
+    /// Says what becomes of the still.
+    pub(super) fn turn(&self, steering: Steering) {
+        *self.lock() = steering;
+        self.turned.notify_all();
+    }
+
+    /// Waits while it has to wait; returns for how long.
+    fn wait(&self) -> Duration {
+        let begun = Instant::now();
+        let still_waits = |steering: &mut Steering| *steering == Steering::Wait;
+        drop(self.turned.wait_while(self.lock(), still_waits));
+        begun.elapsed()
     }
 }
 
@@ -231,7 +277,7 @@ fn free_name(folder: &Path) -> PathBuf {
 fn small_picture(
     renderer: &mut Renderer,
     preset: &Path,
-    proceed: &mut dyn FnMut(f32) -> bool,
+    proceed: &mut dyn FnMut(f32) -> Proceed,
 ) -> Option<([u32; 2], Vec<u8>)> {
     let sky = crate::files::open(preset).ok()?;
     let quality = Quality { pixel_samples: 1, update: UpdateFraction::Full, ..Quality::level(QualityLevel::Draft) };
@@ -263,8 +309,9 @@ fn cube(shape: Shape) -> Option<CubeLayout> {
 
 /// Files and times of all pictures that are to be written.
 fn pictures(job: &StillJob) -> anyhow::Result<Vec<(PathBuf, f64)>> {
-    let Some(frames) = job.export.frames else { return Ok(vec![(job.export.path.clone(), job.time_secs)]) };
-    let pattern = FramePattern::parse(&job.export.path)?;
+    let path = named(&job.export.path, &job.preset);
+    let Some(frames) = job.export.frames else { return Ok(vec![(path, job.time_secs)]) };
+    let pattern = FramePattern::parse(&path)?;
     anyhow::ensure!(pattern.is_sequence(), "a sequence needs #### for the frame number in its path");
     let speed = job.preset.animation.speed;
     let numbers = (frames.first..=frames.last).step_by(frames.step.max(1) as usize);
@@ -275,14 +322,18 @@ fn pictures(job: &StillJob) -> anyhow::Result<Vec<(PathBuf, f64)>> {
 
 /// A renderer of its own on the same device, so that the window's keeps its history and its picture. Returns whether all was
 /// written, rather than given up.
-fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result<bool> {
+fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> Proceed) -> anyhow::Result<bool> {
     let mut renderer = Renderer::new(&job.gpu)?;
     let pictures = pictures(job)?;
     anyhow::ensure!(
         !pictures.is_empty(),
         "all frames are there already; untick “Keep what is there” to render them again"
     );
+    let mut ends = false;
     for (index, (path, time_secs)) in pictures.iter().enumerate() {
+        if ends {
+            break;
+        }
         let mut preset = job.preset.clone();
         preset.scene = preset.at(*time_secs);
         let file = StillFile {
@@ -291,11 +342,19 @@ fn still(job: &StillJob, proceed: &mut dyn FnMut(f32) -> bool) -> anyhow::Result
             size: job.export.size,
             cube: cube(job.export.shape),
             frame_secs: job.preset.animation.speed / job.export.frames.map_or(24.0, |frames| frames.fps),
+            brightest: job.export.brightest,
             largest_whole: LARGEST_WHOLE_PX,
             region: job.export.region.map(|region| pixels_of(region, job.export.size)),
             about: About { preset: &preset, quality: &job.quality, time_secs: *time_secs },
         };
-        let mut part = |share: f32| proceed((index as f32 + share) / pictures.len() as f32);
+        let mut part = |share: f32| match proceed((index as f32 + share) / pictures.len() as f32) {
+            // A frame that was left half done would stay so when the rest is made.
+            Proceed::WithWhatIsDone if job.export.frames.is_some() => {
+                ends = true;
+                Proceed::On
+            }
+            asked => asked,
+        };
         if !file.render(&mut renderer, &mut part)? {
             return Ok(false);
         }

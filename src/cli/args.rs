@@ -46,6 +46,12 @@ pub(super) fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "must be a finite number".to_owned())
 }
 
+/// A finite number above 0.
+pub(super) fn above_zero(text: &str) -> Result<f32, String> {
+    let number = text.parse().ok().filter(|number: &f32| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "must be a number above 0".to_owned())
+}
+
 /// `x,y,z,heading,pitch[,fov]` as values of the camera's parameters.
 pub(super) fn set_camera(scene: &mut Scene, text: &str) -> Result<()> {
     const KEYS: [&str; 6] = ["east_m", "height_m", "south_m", "heading_deg", "pitch_deg", "field_of_view_deg"];

@@ -16,21 +16,22 @@ use super::{Device, Edits, args, print};
 use crate::export::ExportError;
 use crate::export::exr::{ExrCompression, ExrDepth, ExrOptions};
 use crate::files::{
-    self, About, Alpha, Content, CubeLayout, FileError, KeptPrograms, StillError, StillFile, files_of_still, save_exr,
-    save_png,
+    self, About, Alpha, Content, CubeLayout, FileError, KeptPrograms, StillError, StillFile, files_of_still, named,
+    save_exr, save_png, soften,
 };
 use crate::gpu::Gpu;
 use crate::images::pattern::{FramePattern, parse_frame_range};
 use crate::plan::{Forced, FramePlan};
-use crate::render::Renderer;
 use crate::render::truth::Goal;
+use crate::render::{Proceed, Renderer};
 use crate::scene::{Frame, LARGEST_WHOLE_PX, Output, Preset, Projection, Quality, UpdateFraction};
 
 #[derive(Clone, Debug, Args)]
 pub(super) struct RenderArgs {
     /// A preset (.ron), an exported .exr or .png, a voxel grid (.json), or the name of a built-in sky.
     scene: PathBuf,
-    /// File to write, .png, .exr or .hdr; `####` in its name stands for the frame number.
+    /// File to write, .png, .exr or .hdr; `####` in its name stands for the frame number, `{name}` for the sky's name and
+    /// `{seed}` for the first seed of its weather.
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
     /// Width and height in pixels, such as `640x360`, `hd` or `4k`.
@@ -81,6 +82,9 @@ pub(super) struct RenderArgs {
     /// Codec of an EXR.
     #[arg(long, default_value = "zip")]
     compression: CompressionArg,
+    /// Compress what is brighter than half of this towards it, in units of the file: a sun that other programs can bear.
+    #[arg(long, value_name = "LIGHT", value_parser = args::above_zero, conflicts_with_all = ["layers", "clouds_only"])]
+    brightest: Option<f32>,
     /// Render each picture once more as a frame of the window, look at the values that each pass writes, and fail at the
     /// first that is not finite.
     #[arg(long)]
@@ -161,6 +165,7 @@ impl RenderArgs {
             layers: false,
             depth: None,
             compression: CompressionArg::Zip,
+            brightest: None,
             watch: false,
             force: Vec::new(),
             json: false,
@@ -175,10 +180,12 @@ impl RenderArgs {
         self
     }
 
-    /// Frames from the first to the last of the sky's own film, if none were named.
+    /// Frames from the first to the last of the sky's own film, if none were named, and the output's name without `{}`.
     pub(super) fn fit_frames(&mut self) -> Result<()> {
+        let mut sky = files::open(&self.scene)?;
+        sky.preset.set_all(&self.edits.sets, &mut Quality::default())?;
+        self.output = named(&self.output, &sky.preset);
         if self.frames.is_none() {
-            let sky = files::open(&self.scene)?;
             let begin_secs = self.time.unwrap_or(sky.time_secs);
             let Some(last) = sky.preset.animation.last_frame(begin_secs, self.fps) else {
                 let said = "the sky's time stands still or has ended, so its film has no length; give --frames";
@@ -339,7 +346,7 @@ impl Job {
         }
         let forced = args::forced(&args.force)?;
         let time_secs = args.time.unwrap_or(sky.time_secs);
-        let pictures = pictures(args, (time_secs, preset.animation.speed), cube)?;
+        let pictures = pictures(args, (&preset, time_secs), cube)?;
         let (scene, output) = (&preset.scene, content.output());
         let whole = Frame { scene, quality: &quality, size, time_secs, output, window: None };
         if (cube.is_some() || args.region.is_some()) && FramePlan::new(&whole).sunshafts.is_some() {
@@ -352,12 +359,13 @@ impl Job {
 /// The files to write, with their times; those of a sequence that exist are left out.
 fn pictures(
     args: &RenderArgs,
-    (begin_secs, speed): (f64, f64),
+    (preset, begin_secs): (&Preset, f64),
     cube: Option<CubeLayout>,
 ) -> Result<Vec<(PathBuf, f64)>> {
-    let pattern = FramePattern::parse(&args.output)?;
+    let output = named(&args.output, preset);
+    let pattern = FramePattern::parse(&output)?;
     let pictures = match (&args.frames, pattern.is_sequence()) {
-        (None, false) => vec![(args.output.clone(), begin_secs)],
+        (None, false) => vec![(output, begin_secs)],
         (None, true) => return Err(Usage("-o has `#` for a frame number, but --frames is missing".to_owned()).into()),
         (Some(_), false) => {
             return Err(Usage("--frames needs `####` in the name of -o, such as sky.####.exr".to_owned()).into());
@@ -367,9 +375,9 @@ fn pictures(
                 return Err(Usage(format!("--fps {} must be above 0", args.fps)).into());
             }
             let frames = parse_frame_range(range).with_context(|| format!("--frames {range:?} cannot be used"))?;
-            let all = frames
-                .into_iter()
-                .map(|frame| (pattern.path_of(frame), begin_secs + speed * f64::from(frame) / args.fps));
+            let all = frames.into_iter().map(|frame| {
+                (pattern.path_of(frame), begin_secs + preset.animation.speed * f64::from(frame) / args.fps)
+            });
             all.filter(|(path, _)| args.overwrite || !is_there(path, cube)).collect()
         }
     };
@@ -447,11 +455,21 @@ fn write_picture(
     let Some(goal) = job.goal else {
         let mut proceed = |share: f32| {
             tell(share);
-            !interrupt::is_asked()
+            if interrupt::is_asked() { Proceed::No } else { Proceed::On }
         };
-        let (size, cube, region) = (job.size, job.cube, job.region);
+        let (size, cube, region, brightest) = (job.size, job.cube, job.region, args.brightest);
         let frame_secs = job.preset.animation.speed / args.fps;
-        let file = StillFile { path, content, size, cube, region, frame_secs, largest_whole: LARGEST_WHOLE_PX, about };
+        let file = StillFile {
+            path,
+            content,
+            size,
+            cube,
+            region,
+            frame_secs,
+            brightest,
+            largest_whole: LARGEST_WHOLE_PX,
+            about,
+        };
         return match file.render(renderer, &mut proceed) {
             Ok(true) => Ok(()),
             Ok(false) => Err(not_finished()),
@@ -477,8 +495,10 @@ fn write_picture(
     match content {
         Content::Linear(options) | Content::CloudsAlone(options, _) => {
             let mut image = truth.picture(renderer)?.image;
-            if let Content::CloudsAlone(_, alpha) = content {
-                alpha.apply(&mut image);
+            match (content, args.brightest) {
+                (Content::CloudsAlone(_, alpha), _) => alpha.apply(&mut image),
+                (_, Some(brightest)) => soften(&mut image.rgba, brightest),
+                _ => {}
             }
             save_exr(path, image, &about, options)?;
         }

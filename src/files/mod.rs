@@ -18,7 +18,7 @@ pub use grid::{VoxelFormat, save_grid, save_vdb};
 pub use open::{Origin, Sky, open};
 pub use picture::{About, save_exr, save_png, save_table};
 pub use programs::KeptPrograms;
-pub use still::{Alpha, Content, CubeLayout, StillError, StillFile, files_of_still};
+pub use still::{Alpha, Content, CubeLayout, StillError, StillFile, files_of_still, named, soften};
 
 use crate::export::ExportError;
 use crate::export::atomic::write_atomically;

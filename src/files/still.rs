@@ -11,8 +11,8 @@ use crate::export::hdr::write_hdr;
 use crate::export::png::PngPixels;
 use crate::images::cross::cross;
 use crate::plan::{FramePlan, Lighting};
-use crate::render::{LinearImage, RenderError, Renderer};
-use crate::scene::{CUBE_FACES, Camera, Frame, Output, Preset, Scene, Window};
+use crate::render::{LinearImage, Proceed, RenderError, Renderer};
+use crate::scene::{CUBE_FACES, Camera, Frame, Output, Preset, Scene, Window, file_stem};
 
 /// Rows of the jitter's pattern: bands are multiples of it.
 const BAND_STEP: u32 = 64;
@@ -117,6 +117,9 @@ pub struct StillFile<'a> {
     pub region: Option<[[u32; 2]; 2]>,
     /// Seconds of the scene until the next frame, for the motion that goes with layers.
     pub frame_secs: f64,
+    /// Where light is to end: what is brighter is compressed towards it ([`soften`]). `None` leaves it as it is. Of layers,
+    /// and of clouds alone, nothing is compressed.
+    pub brightest: Option<f32>,
     /// Pictures of more pixels are rendered in bands; [`LARGEST_WHOLE_PX`](crate::scene::LARGEST_WHOLE_PX) suits most machines.
     pub largest_whole: u64,
     /// What it shows, and how it is computed.
@@ -129,12 +132,12 @@ impl StillFile<'_> {
         files_of_still(self.path, self.cube)
     }
 
-    /// Renders and writes it. `proceed` hears the share that is done, and gives it up by `false`; then nothing is written, but
-    /// for the faces of a cube that were finished. Returns whether it was written.
+    /// Renders and writes it. `proceed` hears the share that is done, and says what becomes of it. If it is given up, nothing is
+    /// written but for the faces of a cube that were finished. Returns whether it was written.
     ///
     /// # Errors
     /// [`StillError`].
-    pub fn render(&self, renderer: &mut Renderer, proceed: &mut dyn FnMut(f32) -> bool) -> Result<bool, StillError> {
+    pub fn render(&self, renderer: &mut Renderer, proceed: &mut dyn FnMut(f32) -> Proceed) -> Result<bool, StillError> {
         match self.cube {
             None => {
                 let scene = &self.about.preset.scene;
@@ -219,7 +222,7 @@ impl StillFile<'_> {
         &self,
         renderer: &mut Renderer,
         options: ExrOptions,
-        proceed: &mut dyn FnMut(f32) -> bool,
+        proceed: &mut dyn FnMut(f32) -> Proceed,
     ) -> Result<bool, StillError> {
         let scene = &self.about.preset.scene;
         let camera = Some(&scene.camera);
@@ -241,7 +244,7 @@ impl StillFile<'_> {
     fn take_in_bands(
         &self,
         renderer: &mut Renderer,
-        proceed: &mut dyn FnMut(f32) -> bool,
+        proceed: &mut dyn FnMut(f32) -> Proceed,
     ) -> Result<Option<Taken>, StillError> {
         let bands = self.bands();
         let mut whole: Option<Taken> = None;
@@ -270,7 +273,7 @@ impl StillFile<'_> {
         &self,
         renderer: &mut Renderer,
         (scene, part): (&Scene, Option<(Window, [u32; 2])>),
-        proceed: &mut dyn FnMut(f32) -> bool,
+        proceed: &mut dyn FnMut(f32) -> Proceed,
     ) -> Result<Option<Taken>, StillError> {
         let mut quality = self.about.quality.clone();
         if self.content == Content::Display16 {
@@ -281,7 +284,7 @@ impl StillFile<'_> {
         let (window, size) = part.map_or((None, self.size), |(window, size)| (Some(window), size));
         let frame = Frame { scene, quality: &quality, size, time_secs, output: self.content.output(), window };
         if let Content::Layers(_) = self.content {
-            let layers = renderer.layers(&frame, proceed)?.filter(|_| proceed(1.0));
+            let layers = renderer.layers(&frame, proceed)?.filter(|_| proceed(1.0) != Proceed::No);
             return Ok(layers.map(|layers| {
                 let lights = layers.lights.into_iter().map(|(name, light)| (name.to_owned(), light)).collect();
                 let distance = layers.beauty.distance_m.clone();
@@ -300,7 +303,9 @@ impl StillFile<'_> {
             }));
         }
         // The last moment to give it up; then it is written.
-        let Some(still) = renderer.still_while(&frame, proceed)?.filter(|_| proceed(1.0)) else { return Ok(None) };
+        let Some(still) = renderer.still_while(&frame, proceed)?.filter(|_| proceed(1.0) != Proceed::No) else {
+            return Ok(None);
+        };
         Ok(Some(match self.content {
             Content::Display => {
                 let (size, rgba8) = renderer.rgba8_of(&still.into_display())?;
@@ -312,8 +317,10 @@ impl StillFile<'_> {
             }
             content => {
                 let mut image = still.picture(renderer)?.image;
-                if let Content::CloudsAlone(_, alpha) = content {
-                    alpha.apply(&mut image);
+                match (content, self.brightest) {
+                    (Content::CloudsAlone(_, alpha), _) => alpha.apply(&mut image),
+                    (_, Some(brightest)) => soften(&mut image.rgba, brightest),
+                    _ => {}
                 }
                 Taken::Light(image, ExrLayers::default())
             }
@@ -346,6 +353,30 @@ impl StillFile<'_> {
         }
         Ok(())
     }
+}
+
+/// Compresses light above half of `brightest` so that it never exceeds it, colour by colour of a pixel alike: a sun that hardware
+/// and samplers of other programs can bear. Light and its slope go on without a step. The compression is that of Khronos'
+/// PBR Neutral for its highlights.
+pub fn soften(rgba: &mut [[f32; 4]], brightest: f32) {
+    let knee = 0.5 * brightest;
+    let room = brightest - knee;
+    for [red, green, blue, _] in rgba {
+        let peak = red.max(*green).max(*blue);
+        if peak > knee {
+            let scale = (brightest - room * room / (peak - knee + room)) / peak;
+            (*red, *green, *blue) = (*red * scale, *green * scale, *blue * scale);
+        }
+    }
+}
+
+/// `{name}` and `{seed}` in a file's name stand for the sky's name and the first seed of its weather.
+pub fn named(path: &Path, preset: &Preset) -> PathBuf {
+    let Some(name) = path.file_name().and_then(|name| name.to_str()).filter(|name| name.contains('{')) else {
+        return path.to_owned();
+    };
+    let seed = preset.scene.weather.layers.first().map_or(0, |layer| layer.seed);
+    path.with_file_name(name.replace("{name}", &file_stem(&preset.name)).replace("{seed}", &seed.to_string()))
 }
 
 /// The files that a still becomes.
@@ -424,4 +455,37 @@ fn crossed(faces: Vec<Taken>, side: u32) -> Option<Taken> {
         LinearImage { size: size(whole), rgba, distance_m, candela_per_unit: scale },
         ExrLayers::default(),
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn softened_light_ends_where_it_is_told_and_bends_without_a_step() {
+        let soft = |value: f32| {
+            let mut pixel = [[value, 0.5 * value, 0.25 * value, 0.3]];
+            soften(&mut pixel, 10.0);
+            pixel[0]
+        };
+        assert_eq!(soft(5.0), [5.0, 2.5, 1.25, 0.3], "as it was");
+        let mut before = 5.0;
+        for step in 1..200 {
+            let seen = soft(5.0 + 0.05 * step as f32);
+            assert!(seen[0] > before && seen[0] - before <= 0.0501, "{before} to {}", seen[0]);
+            assert!((seen[1] / seen[0] - 0.5).abs() < 1e-6, "its hue stays");
+            before = seen[0];
+        }
+        let sun = soft(3e9)[0];
+        assert!((9.99..=10.0).contains(&sun), "{sun}");
+    }
+
+    #[test]
+    fn names_and_seeds_go_into_file_names_alone() {
+        let mut preset = Preset::new("Fair weather, 2", Scene::default());
+        preset.scene.weather.layers[0].seed = 42;
+        let path = |text: &str| named(Path::new(text), &preset).display().to_string();
+        assert_eq!(path("{seed}/{name}_{seed}.####.exr"), "{seed}/fair-weather--2_42.####.exr");
+        assert_eq!(path("sky.png"), "sky.png");
+    }
 }

@@ -181,11 +181,13 @@ impl Effect {
     }
 }
 
-/// Effects that run, or do not, whatever the plan would say.
+/// Effects that run, or do not, whatever the plan would say; and marks over the picture that no sky asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Forced {
     on: u64,
     off: u64,
+    /// Whether what clips on the screen is striped.
+    pub stripes: bool,
 }
 
 impl Forced {
@@ -194,7 +196,7 @@ impl Forced {
     pub fn with(self, effect: Effect, force: Option<bool>) -> Self {
         let rest = !effect.bit();
         let bit = |wanted: bool| if force == Some(wanted) { effect.bit() } else { 0 };
-        Self { on: self.on & rest | bit(true), off: self.off & rest | bit(false) }
+        Self { on: self.on & rest | bit(true), off: self.off & rest | bit(false), ..self }
     }
 
     /// Whether an effect is forced on or off.
@@ -206,9 +208,9 @@ impl Forced {
         }
     }
 
-    /// Whether everything is left to the plan.
+    /// Whether all effects are left to the plan.
     pub fn is_empty(self) -> bool {
-        self == Self::default()
+        self.on | self.off == 0
     }
 }
 

@@ -94,6 +94,8 @@ pub struct FramePlan {
     pub tone_map: ToneMap,
     /// Whether the display's contrast and saturation change anything.
     pub graded: bool,
+    /// Whether what clips on the screen is striped.
+    pub stripes: bool,
     /// Whether clouds are found by tracking, which needs bounds of their density.
     pub tracks: bool,
     /// Samples of each pixel; those of paths are their own.
@@ -146,6 +148,7 @@ impl FramePlan {
             alone: frame.output == Output::CloudsAlone,
             tone_map: scene.display.tone_map,
             graded,
+            stripes: forced.stripes && frame.output == Output::Display,
             tracks: false,
             pixel_samples: 1,
             verdicts: why.complete(),

@@ -1,6 +1,7 @@
 //! A still taken apart into what each light adds to it. Light adds up, so a layer is what is missing when its light is left
 //! out: pictures with more and more of it forced off, each less the next. The layers sum to the whole by construction.
 
+use super::still::Proceed;
 use super::truth::TruthPicture;
 use super::{LinearImage, RenderError, Renderer};
 use crate::plan::{Effect, Forced};
@@ -40,14 +41,15 @@ const PARTS: [Part; 7] = [
 const BACKDROP: &str = "backdrop";
 
 impl Renderer {
-    /// A finished still of the frame, as [`Renderer::still_while`] makes it, and its layers; `None` if it was given up.
+    /// A finished still of the frame, as [`Renderer::still_while`] makes it, and its layers; `None` if it was given up. Layers of
+    /// unlike samples would not sum, so none ends before the others: [`Proceed::WithWhatIsDone`] is [`Proceed::On`] here.
     ///
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
     pub fn layers(
         &mut self,
         frame: &Frame<'_>,
-        proceed: &mut dyn FnMut(f32) -> bool,
+        proceed: &mut dyn FnMut(f32) -> Proceed,
     ) -> Result<Option<Layers>, RenderError> {
         let wanted = self.forced();
         let layers = self.take_apart(frame, wanted, proceed);
@@ -59,7 +61,7 @@ impl Renderer {
         &mut self,
         frame: &Frame<'_>,
         wanted: Forced,
-        proceed: &mut dyn FnMut(f32) -> bool,
+        proceed: &mut dyn FnMut(f32) -> Proceed,
     ) -> Result<Option<Layers>, RenderError> {
         let pictures = 1.0 + PARTS.len() as f32;
         let (mut scene, mut quality) = (frame.scene.clone(), frame.quality.clone());
@@ -95,10 +97,14 @@ impl Renderer {
         frame: &Frame<'_>,
         (scene, quality): (&Scene, &Quality),
         forced: Forced,
-        proceed: &mut dyn FnMut(f32) -> bool,
+        proceed: &mut dyn FnMut(f32) -> Proceed,
     ) -> Result<Option<TruthPicture>, RenderError> {
         self.force(forced);
-        let still = self.still_while(&Frame { scene, quality, ..*frame }, proceed)?;
+        let mut wholly = |share| match proceed(share) {
+            Proceed::WithWhatIsDone => Proceed::On,
+            asked => asked,
+        };
+        let still = self.still_while(&Frame { scene, quality, ..*frame }, &mut wholly)?;
         still.map(|still| still.picture(self)).transpose()
     }
 }

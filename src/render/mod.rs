@@ -45,7 +45,7 @@ use weather::WeatherMap;
 pub use layers::Layers;
 pub use meter::LightHistogram;
 pub use output::{Counts, LinearImage};
-pub use still::Still;
+pub use still::{Proceed, Still};
 
 /// Every program that a frame of this plan may ask for, bakes and the clear sky included.
 pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {

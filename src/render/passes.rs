@@ -134,12 +134,14 @@ fn tonemap_key(plan: &FramePlan) -> ProgramKey {
         ToneMap::Neutral => 1,
         ToneMap::Linear => 2,
         ToneMap::FalseColour => 3,
+        ToneMap::Aces => 4,
     };
     ProgramKey::plain("pass/tonemap.wgsl")
         .with_flags(composed_flags(plan))
         .with_flags(samples_flag(plan))
         .with_flags(plan.graded.then_some("GRADED"))
         .with_constant("TONE_MAP", curve)
+        .with_constant("STRIPES", plan.stripes.into())
 }
 
 fn samples_flag(plan: &FramePlan) -> Option<&'static str> {

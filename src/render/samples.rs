@@ -45,6 +45,11 @@ impl PixelSamples {
         is_there
     }
 
+    /// Drops the one under way for the one before it, whose mean is still there.
+    pub(super) fn step_back(&mut self) {
+        self.current = self.current.saturating_sub(1);
+    }
+
     /// How many there will be.
     pub(super) fn count(&self) -> u32 {
         self.count

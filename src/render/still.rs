@@ -31,8 +31,21 @@ pub struct Still {
     /// What is left of the present one.
     jobs: VecDeque<Job>,
     finished: u32,
+    /// Whether no sample is begun any more.
+    ends: bool,
     times: Vec<PassTime>,
     source: TimingSource,
+}
+
+/// What becomes of a picture that takes its time, as whoever waits for it says while it is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Proceed {
+    /// It is made to its end.
+    On,
+    /// It ends with the samples of each pixel that it has, at least one.
+    WithWhatIsDone,
+    /// It is given up.
+    No,
 }
 
 /// How often it is looked whether shaders have been compiled, and whether a still is still wanted.
@@ -88,7 +101,7 @@ impl Renderer {
         let finish = passes.finish_into_either(cloud)?;
         let jobs = first.iter().chain(&each).chain(&finish[0]).cloned().collect();
         let (source, times) = (TimingSource::of(&self.gpu), Vec::new());
-        Ok(Still { targets, candela_per_unit, samples, each, finish, jobs, finished: 0, times, source })
+        Ok(Still { targets, candela_per_unit, samples, each, finish, jobs, finished: 0, ends: false, times, source })
     }
 
     /// A finished still as the frame's quality has it: with its samples of each pixel, and its shorter steps.
@@ -96,32 +109,34 @@ impl Renderer {
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
     pub fn still(&mut self, frame: &Frame<'_>) -> Result<Still, RenderError> {
-        let still = self.still_while(frame, &mut |_| true)?;
+        let still = self.still_while(frame, &mut |_| Proceed::On)?;
         Ok(still.unwrap_or_else(|| unreachable!("nobody stops it")))
     }
 
-    /// The same in slices: `proceed` hears the share of the work that is done several times a second, and `false` from it
-    /// gives the still up. Shaders are compiled on other threads meanwhile.
+    /// The same in slices: `proceed` hears the share of the work that is done several times a second, and
+    /// says what becomes of the still. Shaders are compiled on other threads meanwhile.
     ///
     /// # Errors
     /// [`RenderError`] as for [`Self::render`].
     pub fn still_while(
         &mut self,
         frame: &Frame<'_>,
-        proceed: &mut dyn FnMut(f32) -> bool,
+        proceed: &mut dyn FnMut(f32) -> Proceed,
     ) -> Result<Option<Still>, RenderError> {
         let quality = frame.quality.of_still();
         let frame = Frame { quality: &quality, ..*frame };
         while !self.still_is_ready(&frame, Integrator::Realtime, quality.pixel_samples)? {
-            if !proceed(0.0) {
+            if proceed(0.0) == Proceed::No {
                 return Ok(None);
             }
             std::thread::sleep(COMPILE_POLL);
         }
         let mut still = self.begin_still(&frame, quality.pixel_samples)?;
         while !still.advance(self, PROCEED_EVERY)? {
-            if !proceed(still.share()) {
-                return Ok(None);
+            match proceed(still.share()) {
+                Proceed::On => {}
+                Proceed::WithWhatIsDone => still.end(),
+                Proceed::No => return Ok(None),
             }
         }
         Ok(Some(still))
@@ -161,7 +176,7 @@ impl Still {
             }
             if self.jobs.is_empty() {
                 self.finished += 1;
-                if self.samples.next(&renderer.gpu) {
+                if !self.ends && self.samples.next(&renderer.gpu) {
                     let finish = &self.finish[self.samples.side()];
                     self.jobs.extend(self.each.iter().chain(finish).cloned());
                 }
@@ -171,6 +186,16 @@ impl Still {
             }
         }
         Ok(self.jobs.is_empty())
+    }
+
+    /// Begins no sample of the pixels any more. The one under way is dropped, unless it is the first, or about to be added to
+    /// the mean.
+    pub fn end(&mut self) {
+        self.ends = true;
+        if self.finished > 0 && self.jobs.len() > self.finish[0].len() {
+            self.jobs.clear();
+            self.samples.step_back();
+        }
     }
 
     /// Share of the work that is done, 0 to 1.

@@ -30,8 +30,10 @@ params! {
         latitude_deg: f32 = 50.0, -90.0..=90.0, Degrees;
         /// Longitude of the place; east is positive.
         longitude_deg: f32 = 14.4, -180.0..=180.0, Degrees;
-        /// Local time minus universal time.
+        /// Local time minus universal time, without daylight saving.
         utc_offset_h: f32 = 1.0, -12.0..=14.0, Hours;
+        /// Whether clocks are an hour ahead of that for the summer.
+        daylight_saving: bool = false;
         /// Illuminance of the sun above the air.
         illuminance_klx: f32 = 128.0, 0.0..=1000.0, Kilolux;
         /// Colour of the sunlight above the air.

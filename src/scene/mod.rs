@@ -31,7 +31,9 @@ pub use frame::{Frame, LARGEST_WHOLE_PX, Output, Window};
 pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
 pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};
 pub use place::{Camera, Display, Domain, DomainKind, FALSE_COLOURS, FieldOfViewAxis, Ground, Projection, ToneMap};
-pub use preset::{Bookmark, MAX_BOOKMARKS, PRESET_VERSION, Preset, PresetError, quality_from_ron, quality_to_ron};
+pub use preset::{
+    Bookmark, MAX_BOOKMARKS, PRESET_VERSION, Preset, PresetError, file_stem, quality_from_ron, quality_to_ron,
+};
 pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
 pub use sun_position::{CITIES, Moment};
 pub use weather::{MapEdge, MapLayer, MapSource, Weather, Wind};

@@ -191,6 +191,8 @@ choices! {
         Agx ("AgX"),
         /// Khronos PBR Neutral: colours as given, highlights compressed.
         Neutral ("Khronos Neutral"),
+        /// The fit of the Academy's film curve that engines use: contrasty, bright colours turn white and blues violet.
+        Aces ("ACES fit"),
         /// No curve; what is too bright clips.
         Linear ("Linear"),
         /// Stops above and below middle grey as colours, to judge exposure by: grey is grey, red is about to clip.

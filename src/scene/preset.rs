@@ -427,5 +427,12 @@ impl Source<'_> {
     }
 }
 
+/// A name as the stem of a file's name: no separators, no spaces.
+pub fn file_stem(name: &str) -> String {
+    let keep = |letter: char| if letter.is_alphanumeric() || letter == '-' { letter } else { '-' };
+    let name: String = name.trim().to_lowercase().chars().map(keep).collect();
+    if name.is_empty() { "sky".to_owned() } else { name }
+}
+
 #[cfg(test)]
 mod tests;

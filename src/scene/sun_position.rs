@@ -22,7 +22,7 @@ pub(super) fn elevation_azimuth_deg(sun: &Sun) -> (f32, f32) {
 #[allow(clippy::cast_possible_truncation, reason = "angles of parameters are f32")]
 fn computed(sun: &Sun) -> Option<(f32, f32)> {
     let new_year = JulianDate::from_utc_simple(YEAR, 1, 1, 0, 0, 0.0).ok()?;
-    let days = f64::from(sun.day) - 1.0 + (f64::from(sun.hour_h) - f64::from(sun.utc_offset_h)) / 24.0;
+    let days = f64::from(sun.day) - 1.0 + (f64::from(sun.hour_h) - sun.clock_offset_h()) / 24.0;
     let date = JulianDate::new(new_year.julian_date() + days, DELTA_T_SECS).ok()?;
     let place = Location { latitude: f64::from(sun.latitude_deg), longitude: f64::from(sun.longitude_deg) };
     let position = SolarPositions::new().at_from_julian(date, place, 0.0, None).ok()?;
@@ -77,6 +77,11 @@ impl Moment {
 }
 
 impl Sun {
+    /// The clock's time minus universal time, in hours.
+    fn clock_offset_h(&self) -> f64 {
+        f64::from(self.utc_offset_h) + f64::from(u8::from(self.daylight_saving))
+    }
+
     /// The local hour of a moment on the sun's day at its place, to a few seconds; `None` where there is none, as at the poles.
     pub fn hour_of(&self, moment: Moment) -> Option<f32> {
         const MINUTES: u16 = 24 * 60;
@@ -127,7 +132,7 @@ impl Sun {
         reason = "a calendar"
     )]
     pub fn set_clock(&mut self, unix_secs: u64) {
-        let local = unix_secs as f64 / 86_400.0 + f64::from(self.utc_offset_h) / 24.0;
+        let local = unix_secs as f64 / 86_400.0 + self.clock_offset_h() / 24.0;
         let days = local.floor().max(0.0);
         // Years of the Gregorian calendar since 1970, one by one: there are few.
         let (mut year, mut left) = (1970_u32, days as u32);
@@ -185,6 +190,9 @@ mod tests {
         }
         let hours: Vec<f32> = Moment::ALL.iter().filter_map(|moment| sun.hour_of(*moment)).collect();
         assert!(hours.len() == 6 && hours.is_sorted(), "{hours:?}");
+        let summer = Sun { daylight_saving: true, ..sun.clone() };
+        let (later, seen) = (summer.hour_of(Moment::Noon).expect("a noon"), sun.hour_of(Moment::Noon).expect("a noon"));
+        assert!((later - seen - 1.0).abs() < 0.01, "clocks are ahead: {later} and {seen}");
         let polar = Sun { latitude_deg: 80.0, day: 172, ..sun };
         assert_eq!(polar.hour_of(Moment::Sunset), None, "the sun does not set");
         assert!(polar.hour_of(Moment::Noon).is_some(), "but there is a noon");

@@ -345,6 +345,9 @@ fn choose_region(state: &mut State) {
     }
 }
 
+/// Second keys, as other programs have them.
+const ALSO: [(Command, Modifiers, Key); 1] = [(Command::Redo, Modifiers::COMMAND, Key::Y)];
+
 /// Runs the commands whose keys were pressed since the last frame.
 pub(super) fn take(ui: &mut Ui, state: &mut State, document: &Document) -> Vec<Action> {
     let mut actions = Vec::new();
@@ -360,7 +363,10 @@ pub(super) fn take(ui: &mut Ui, state: &mut State, document: &Document) -> Vec<A
         if is_of_menus || asking || has_text && is_of_text || typing && command.yields_to_focus() && !free {
             continue;
         }
-        if ui.input_mut(|input| input.consume_shortcut(&command.shortcut())) {
+        let also = ALSO.into_iter().filter(|(other, ..)| *other == command);
+        let mut keys =
+            also.map(|(_, modifiers, key)| KeyboardShortcut::new(modifiers, key)).chain([command.shortcut()]);
+        if ui.input_mut(|input| keys.any(|keys| input.consume_shortcut(&keys))) {
             command.run(ui, state, document, &mut actions);
         }
     }

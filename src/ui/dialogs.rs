@@ -1,6 +1,7 @@
 //! Questions: unsaved changes, paths, stills, recovery; and the sheet of shortcuts.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use egui::{Grid, Id, Key, Modal, RichText, Ui};
 
@@ -10,6 +11,7 @@ use super::{Command, Library, State, row};
 use crate::app::action::{Action, Answer, Browse, Request};
 use crate::app::document::Document;
 use crate::app::preferences::{Habit, Preferences};
+use crate::scene::file_stem;
 use crate::scene::param::Choice as _;
 
 /// How to work with the program.
@@ -39,8 +41,10 @@ pub enum Dialog {
     Export(ExportForm),
     /// Whether to take what a crash left behind.
     Recover {
-        /// Name of the preset that was being edited.
-        name: String,
+        /// Names of what was being edited and how long ago that was kept, newest first.
+        copies: Vec<(String, Duration)>,
+        /// Which of them is taken.
+        chosen: usize,
     },
     /// The sheet of shortcuts.
     Shortcuts,
@@ -50,18 +54,11 @@ pub enum Dialog {
     Preferences,
 }
 
-/// A name as a file's name: no separators, no spaces.
-pub(super) fn file_name(name: &str) -> String {
-    let keep = |letter: char| if letter.is_alphanumeric() || letter == '-' { letter } else { '-' };
-    let name: String = name.trim().to_lowercase().chars().map(keep).collect();
-    if name.is_empty() { "sky".to_owned() } else { name }
-}
-
 impl Dialog {
     /// The save-as dialog with a path that suits the document.
     pub fn save_as(document: &Document, library: &Library) -> Self {
         let path = document.path().cloned();
-        let path = path.unwrap_or_else(|| library.folder.join(format!("{}.ron", file_name(document.name()))));
+        let path = path.unwrap_or_else(|| library.folder.join(format!("{}.ron", file_stem(document.name()))));
         Self::SaveAs { name: document.preset().name.clone(), path: path.display().to_string() }
     }
 
@@ -103,7 +100,7 @@ pub(super) fn show(
             Dialog::Open { path } => open(ui, path, actions),
             Dialog::SaveAs { name, path } => save_as(ui, name, path, (document, actions)),
             Dialog::Export(form) => export_form::show(ui, form, actions),
-            Dialog::Recover { name } => recover(ui, name, actions),
+            Dialog::Recover { copies, chosen } => recover(ui, copies, chosen, actions),
             Dialog::Shortcuts => shortcuts(ui, screen.height() - 130.0),
             Dialog::Help => help(ui, screen.height() - 130.0),
             Dialog::Preferences => liked(ui, preferences),
@@ -225,17 +222,37 @@ fn save_as(
     }
 }
 
-fn recover(ui: &mut Ui, name: &str, actions: &mut Vec<Action>) -> Fate {
+/// A time that has passed, in words.
+fn ago(passed: Duration) -> String {
+    let secs = passed.as_secs();
+    match secs {
+        0..120 => format!("{secs} s ago"),
+        120..7200 => format!("{} min ago", secs / 60),
+        7200..172_800 => format!("{} h ago", secs / 3600),
+        _ => format!("{} days ago", secs / 86_400),
+    }
+}
+
+fn recover(ui: &mut Ui, copies: &[(String, Duration)], chosen: &mut usize, actions: &mut Vec<Action>) -> Fate {
     ui.heading("Recover unsaved work?");
-    ui.label(format!("The program ended without saving “{name}”. Its last state was kept."));
+    let name = copies.get(*chosen).map_or("", |(name, _)| name);
+    ui.label(format!("The program ended without saving “{name}”. Its last states were kept."));
+    if copies.len() > 1 {
+        for (index, (name, age)) in copies.iter().enumerate() {
+            let newest = if index == 0 { ", the newest" } else { "" };
+            let text = format!("{name}, {}{newest}", ago(*age));
+            let choice = ui.radio_value(chosen, index, &text);
+            row::name(ui, &choice, &text, &format!("recover.{index}"));
+        }
+    }
     let mut taken = None;
     ui.add_space(8.0);
     ui.horizontal(|ui| {
         if ui.button("Recover").clicked() {
-            taken = Some(true);
+            taken = Some(Some(*chosen));
         }
         if ui.button("Discard").clicked() {
-            taken = Some(false);
+            taken = Some(None);
         }
     });
     let Some(taken) = taken else { return Fate::Stays };

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use egui::Ui;
 
-use super::dialogs::{Fate, confirm, file_name, path_field};
+use super::dialogs::{Fate, confirm, path_field};
 use super::row;
 use crate::app::action::{Action, Browse, Export, Request, Sequence, Shape, Still};
 use crate::app::document::Document;
 use crate::scene::param::Choice as _;
-use crate::scene::{Animation, Camera, LARGEST_WHOLE_PX, QualityLevel};
+use crate::scene::{Animation, Camera, LARGEST_WHOLE_PX, QualityLevel, file_stem};
 
 /// The form for a still, as typed.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +26,8 @@ pub struct ExportForm {
     pub frames: Option<Sequence>,
     /// Quality; `None` for that of the viewport.
     pub level: Option<QualityLevel>,
+    /// Where light is compressed to, and whether it is.
+    pub brightest: (f32, bool),
     /// Where it goes.
     pub path: String,
     /// The region of the viewport, and whether only that is rendered.
@@ -39,7 +41,7 @@ pub struct ExportForm {
 impl ExportForm {
     /// A full-HD EXR named after the document, at the level that its preset names, of the viewport's region if it has one.
     pub fn for_document(document: &Document, (region, viewport): (Option<[f32; 4]>, [u32; 2])) -> Self {
-        let path = PathBuf::from(format!("{}.exr", file_name(document.name())));
+        let path = PathBuf::from(format!("{}.exr", file_stem(document.name())));
         let path = std::path::absolute(&path).unwrap_or(path).display().to_string();
         let level = Some(document.preset().quality.unwrap_or(QualityLevel::High));
         Self {
@@ -49,6 +51,7 @@ impl ExportForm {
             shape: Shape::Camera,
             frames: None,
             level,
+            brightest: (1000.0, false),
             path,
             region: region.map(|region| (region, true)),
             film: document.animation().clone(),
@@ -80,6 +83,11 @@ impl ExportForm {
             _ => (120.0 * pixels, 32.0 * pixels * (faces - 1.0)),
         };
         300.0 + (together + kept) / 1e6
+    }
+
+    /// Whether its light may be compressed: layers would no longer sum, and clouds have no sun.
+    fn can_soften(&self) -> bool {
+        matches!(self.still, Still::Exr | Still::Radiance)
     }
 
     fn is_cube(&self) -> bool {
@@ -222,6 +230,16 @@ pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>
             }
         }
     });
+    if form.can_soften() {
+        ui.horizontal_wrapped(|ui| {
+            let (value, wanted) = &mut form.brightest;
+            let hint = "Compresses light above half of this towards it, for programs that cannot bear the sun as it is";
+            ui.checkbox(wanted, "Soften what is brighter than").on_hover_text(hint);
+            let field = ui.add_enabled(*wanted, egui::DragValue::new(value).range(0.1..=65_000.0).speed(10.0));
+            row::name(ui, &field, "Brightest light", "Brightest light");
+        });
+    }
+    ui.weak("In a file’s name, {name} is the sky’s and {seed} its weather’s");
     path_field(ui, &mut form.path, Browse::Export, actions);
     match confirm(ui, "Export", !form.path.trim().is_empty()) {
         None => Fate::Stays,
@@ -233,6 +251,7 @@ pub(super) fn show(ui: &mut Ui, form: &mut ExportForm, actions: &mut Vec<Action>
                     shape: form.shape,
                     level: form.level,
                     frames: form.frames,
+                    brightest: Some(form.brightest.0).filter(|_| form.can_soften() && form.brightest.1),
                     region: form.region_of_still(),
                     path: PathBuf::from(form.path.trim()),
                 })));

@@ -24,6 +24,8 @@ pub struct HistogramState {
     pub light: Option<LightHistogram>,
     /// The curve that was left for false colours.
     left: Option<ToneMap>,
+    /// Whether what clips is striped in the window.
+    pub stripes: bool,
 }
 
 impl HistogramState {
@@ -61,6 +63,8 @@ fn white(tone_map: ToneMap) -> f64 {
         ToneMap::Agx => 16.5 - 12.473_93 - 0.18_f64.log2(),
         // Neutral approaches white without end; a tenth of its highlights is left 5 stops up.
         ToneMap::Neutral => 5.0,
+        // Hill's fit reaches 1 at 25.67, after its gain of 1/0.6.
+        ToneMap::Aces => (0.6 * 25.67 / 0.18_f64).log2(),
         ToneMap::Linear => -(0.18_f64.log2()),
         ToneMap::FalseColour => f64::from(FALSE_COLOURS[FALSE_COLOURS.len() - 2].0),
     }
@@ -99,6 +103,9 @@ fn buttons(ui: &mut Ui, state: &mut HistogramState, document: &Document, actions
     let auto = ui.checkbox(&mut state.is_auto, "Auto");
     row::name(ui, &auto, "Automatic exposure", "histogram.auto");
     auto.on_hover_text("The exposure follows the picture; off locks it as it is");
+    let stripes = ui.checkbox(&mut state.stripes, "Stripes");
+    row::name(ui, &stripes, "Stripes over what clips", "histogram.stripes");
+    stripes.on_hover_text("Stripes over what is as bright as the screen goes. They are in no file but a screenshot");
     let is_false = document.preset().scene.display.tone_map == ToneMap::FalseColour;
     let colours = ui.selectable_label(is_false, "False colour");
     row::name(ui, &colours, "False colour", "histogram.false_colour");

@@ -46,7 +46,7 @@ pub use viewport::{Gesture, Picture, ViewportState};
 
 use egui::{Margin, Theme, Ui};
 
-use crate::app::action::Action;
+use crate::app::action::{Action, Steering};
 use crate::app::document::Document;
 use crate::app::preferences::Preferences;
 use crate::plan::Forced;
@@ -99,6 +99,15 @@ pub struct State {
     pub busy: Option<Busy>,
 }
 
+impl State {
+    /// What the window's picture shows whatever the sky calls for.
+    pub fn forced(&self) -> Forced {
+        let mut forced = self.forced;
+        forced.stripes = self.histogram.stripes;
+        forced
+    }
+}
+
 /// What a thread is busy with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Busy {
@@ -106,8 +115,10 @@ pub struct Busy {
     pub text: String,
     /// How much of it is done, 0 to 1, and the seconds that the rest is likely to take; `None` where nobody knows.
     pub progress: Option<(f32, Option<f64>)>,
-    /// Whether it can be given up.
-    pub can_stop: bool,
+    /// Whether it goes on or waits; `None` where it cannot be stopped.
+    pub steering: Option<Steering>,
+    /// What [`Steering::End`] does, in words; empty where there is nothing between going on and giving up.
+    pub end: &'static str,
 }
 
 impl Default for State {

@@ -53,8 +53,12 @@ pub(super) fn show(ui: &mut Ui, scene: &mut Scene) -> Option<&'static str> {
                 }
             });
             row::name(ui, &response.response, "City", "sun.city");
-            let hint = "Hours are local without daylight saving";
-            response.response.on_hover_text(hint);
+            response.response.on_hover_text("Its latitude, longitude, and time zone");
+            let saving = ui.checkbox(&mut scene.sun.daylight_saving, "Summer time");
+            row::name(ui, &saving, "Daylight saving", "sun.daylight_saving.dial");
+            if saving.on_hover_text("Clocks are an hour ahead").changed() {
+                changed = Some("sun.daylight_saving");
+            }
         });
     });
     changed
@@ -62,9 +66,10 @@ pub(super) fn show(ui: &mut Ui, scene: &mut Scene) -> Option<&'static str> {
 
 /// The hours of all moments, computed anew only for another day or place: each takes some hundred positions of the sun.
 fn hours(ui: &Ui, sun: &Sun) -> [Option<f32>; Moment::ALL.len()] {
-    let key = [sun.latitude_deg, sun.longitude_deg, sun.utc_offset_h, sun.day as f32].map(f32::to_bits);
+    let saved = f32::from(u8::from(sun.daylight_saving));
+    let key = [sun.latitude_deg, sun.longitude_deg, sun.utc_offset_h, saved, sun.day as f32].map(f32::to_bits);
     let id = egui::Id::unique("hours of the sun");
-    if let Some((known, hours)) = ui.data(|data| data.get_temp::<([u32; 4], [Option<f32>; 6])>(id))
+    if let Some((known, hours)) = ui.data(|data| data.get_temp::<([u32; 5], [Option<f32>; 6])>(id))
         && known == key
     {
         return hours;

@@ -4,7 +4,7 @@ use egui::containers::menu::{MenuConfig, SubMenuButton};
 use egui::{Align, Layout, PopupCloseBehavior, ThemePreference, Ui};
 
 use super::{Busy, Command, State, row};
-use crate::app::action::{Action, Request};
+use crate::app::action::{Action, Request, Steering};
 use crate::app::document::Document;
 use crate::app::preferences::Preferences;
 use crate::scene::SPEED_RANGE;
@@ -120,14 +120,29 @@ fn entries(ui: &mut Ui, (state, document): (&State, &Document), groups: &[&[Comm
 
 /// What a thread is busy with, how far it is, and the way out. Laid out from the right.
 fn busy(ui: &mut Ui, busy: &Busy, actions: &mut Vec<Action>) {
-    if busy.can_stop {
-        let stop = ui.button("Cancel").on_hover_text("Gives it up; nothing is written");
-        row::name(ui, &stop, "Cancel the work", "busy.cancel");
-        if stop.clicked() {
-            actions.push(Action::Ask(Request::GiveUp));
+    let waits = busy.steering == Some(Steering::Wait);
+    if let Some(steering) = busy.steering {
+        let mut button = |title: &str, hint: &str, (name, key): (&str, &str), wanted: Steering| {
+            let button = ui.button(title).on_hover_text(hint);
+            row::name(ui, &button, name, key);
+            if button.clicked() {
+                actions.push(Action::Ask(Request::Steer(wanted)));
+            }
+        };
+        button("Cancel", "Gives it up; nothing is written", ("Cancel the work", "busy.cancel"), Steering::GiveUp);
+        if !busy.end.is_empty() && steering != Steering::End {
+            button("Stop", busy.end, ("Stop and save", "busy.end"), Steering::End);
+        }
+        if waits {
+            button("Go on", "Renders on", ("Go on with the work", "busy.wait"), Steering::On);
+        } else {
+            button("Pause", "Leaves the processors to others", ("Pause the work", "busy.wait"), Steering::Wait);
         }
     }
     match busy.progress {
+        Some((share, _)) if waits => {
+            ui.add(egui::ProgressBar::new(share).desired_width(130.0).text(format!("{:.0} % · waits", share * 100.0)));
+        }
         Some((share, left)) => {
             let left = left.map_or_else(String::new, |left| format!(" · {}", clock(left)));
             let bar = egui::ProgressBar::new(share).desired_width(130.0);

@@ -63,3 +63,69 @@ fn false_colours_are_those_of_the_table() {
     }
     assert!(seen.len() >= 9, "only bands {seen:?} were seen");
 }
+
+/// Stephen Hill's fit as published, by a matrix library instead of the shader's arithmetic.
+fn aces(light: [f32; 3]) -> [f32; 3] {
+    use glam::{DMat3, DVec3};
+    let into = DMat3::from_cols_array_2d(&[
+        [0.59719, 0.076, 0.0284],
+        [0.35458, 0.90834, 0.13383],
+        [0.04823, 0.01566, 0.83777],
+    ]);
+    let back = DMat3::from_cols_array_2d(&[
+        [1.60475, -0.10208, -0.00327],
+        [-0.53108, 1.10813, -0.07276],
+        [-0.07367, -0.00605, 1.07602],
+    ]);
+    let v = into * (DVec3::from_array(light.map(f64::from)) / 0.6);
+    let curve = (v * (v + 0.024_578_6) - 0.000_090_537) / (v * (0.983_729 * v + 0.432_951) + 0.238_081);
+    (back * curve).clamp(DVec3::ZERO, DVec3::ONE).as_vec3().to_array()
+}
+
+fn encoded(linear: f32) -> f32 {
+    if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+}
+
+#[test]
+fn the_film_curve_is_the_published_fit_and_stripes_lie_over_what_clips_alone() {
+    let mut scene = BUILTINS[0].preset().expect("it is sound").scene;
+    scene.display.tone_map = ToneMap::Aces;
+    (scene.display.contrast, scene.display.saturation, scene.display.white_kelvin) = (1.0, 1.0, 6504.0);
+    let quality = quick();
+    let mut renderer = renderer();
+    for exposure_ev in [8.0_f32, 11.0, 14.0] {
+        scene.display.exposure_ev = exposure_ev;
+        let linear = frame(&scene, &quality, [48, 27], Output::Linear);
+        render(&mut renderer, &linear);
+        let light = renderer.linear().expect("it can be read");
+        let shown = frame(&scene, &quality, [48, 27], Output::Display);
+        let mut show = |stripes: bool| {
+            let mut forced = renderer.forced();
+            forced.stripes = stripes;
+            renderer.force(forced);
+            render(&mut renderer, &shown);
+            renderer.display_rgba8().expect("it can be read").1
+        };
+        let (plain, striped) = (show(false), show(true));
+        show(false);
+        // Saturation-based: full scale is 1.2 times two to the exposure value, in candela per square metre.
+        let scale = light.candela_per_unit / (1.2 * exposure_ev.exp2());
+        let (mut clipped, mut bands) = (0, 0);
+        for (index, rgba) in light.rgba.iter().enumerate() {
+            let seen = &plain[4 * index..4 * index + 3];
+            let own = aces([rgba[0] * scale, rgba[1] * scale, rgba[2] * scale]).map(|linear| 255.0 * encoded(linear));
+            let near = own.iter().zip(seen).all(|(own, seen)| (own - f32::from(*seen)).abs() <= 2.5);
+            assert!(near, "{exposure_ev} EV, pixel {index}: {seen:?}, by the formula {own:?}");
+            let over = &striped[4 * index..4 * index + 3];
+            let clips = own.iter().any(|own| *own > 254.9);
+            clipped += u32::from(clips);
+            bands += u32::from(over != seen);
+            assert!(over == seen || own.iter().any(|own| *own > 254.0), "a stripe over {own:?}");
+        }
+        assert!(
+            bands * 3 >= clipped && (clipped == 0 || bands < clipped + 9),
+            "{bands} of {clipped} pixels are striped"
+        );
+        assert!(exposure_ev > 8.0 || clipped > 100, "something clips: {clipped}");
+    }
+}

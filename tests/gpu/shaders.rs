@@ -26,7 +26,7 @@ fn every_function_file_and_test_shader_is_valid() {
 type Change = fn(&mut Scene, &mut Quality);
 
 /// Everything the plan may decide, switched one at a time on every preset.
-const CHANGES: [Change; 22] = [
+const CHANGES: [Change; 23] = [
     |_, _| {},
     |scene, _| scene.weather.coverage = 0.0,
     |scene, _| scene.layers.iter_mut().for_each(|layer| layer.model = DensityModel::Profile),
@@ -47,6 +47,7 @@ const CHANGES: [Change; 22] = [
     |scene, _| scene.domain.kind = DomainKind::Box,
     |scene, _| scene.display.tone_map = ToneMap::Neutral,
     |scene, _| scene.display.tone_map = ToneMap::Linear,
+    |scene, _| scene.display.tone_map = ToneMap::Aces,
     |_, quality| quality.octaves = 0,
     |_, quality| quality.update = UpdateFraction::Full,
 ];

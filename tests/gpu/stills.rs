@@ -5,8 +5,8 @@ use std::time::Duration;
 use nephoscope::export::exr::{ExrDepth, ExrOptions};
 use nephoscope::files::{About, Content, StillFile};
 use nephoscope::gpu::readback;
-use nephoscope::render::Renderer;
 use nephoscope::render::truth::Goal;
+use nephoscope::render::{Proceed, Renderer};
 use nephoscope::scene::{Frame, Output, Preset, Projection, Quality, Scene, Window};
 
 use crate::common::gpu;
@@ -133,7 +133,7 @@ fn layers_sum_to_the_picture_and_follow_their_lights() {
         let mut shares = Vec::new();
         let mut proceed = |share: f32| {
             shares.push(share);
-            true
+            Proceed::On
         };
         let layers = renderer.layers(&frame(scene, &quality, [48, 27], Output::Linear), &mut proceed);
         let layers = layers.expect("it can be rendered").expect("it was wanted");
@@ -178,12 +178,50 @@ fn a_still_that_is_given_up_is_no_picture_and_the_next_one_is() {
     let (scene, quality) = (Scene::default(), Quality { pixel_samples: 64, still_step: 1.0, ..quick() });
     let mut renderer = renderer();
     let large = frame(&scene, &quality, [320, 180], Output::Linear);
-    let given_up = renderer.still_while(&large, &mut |share| share == 0.0).expect("nothing fails");
+    let given_up = renderer
+        .still_while(&large, &mut |share| if share == 0.0 { Proceed::On } else { Proceed::No })
+        .expect("nothing fails");
     assert!(given_up.is_none(), "it was not wanted any more");
-    assert!(renderer.layers(&large, &mut |_| false).expect("nothing fails").is_none() && renderer.forced().is_empty());
+    assert!(
+        renderer.layers(&large, &mut |_| Proceed::No).expect("nothing fails").is_none() && renderer.forced().is_empty()
+    );
     let one = Quality { pixel_samples: 1, ..quality.clone() };
     let small = frame(&scene, &one, [32, 18], Output::Linear);
-    assert!(renderer.still_while(&small, &mut |_| true).expect("nothing fails").is_some());
+    assert!(renderer.still_while(&small, &mut |_| Proceed::On).expect("nothing fails").is_some());
+}
+
+#[test]
+fn a_still_that_ends_early_holds_the_samples_that_were_finished_and_nothing_of_the_next() {
+    let (scene, quality) = (Scene::default(), quick());
+    let mut renderer = renderer();
+    let frame = frame(&scene, &quality, [48, 27], Output::Linear);
+    let mut ended_after = |more_jobs: u32| {
+        let mut still = renderer.begin_still(&frame, 8).expect("nothing fails");
+        while still.pixel_samples().0 < 2 {
+            assert!(!still.advance(&renderer, Duration::ZERO).expect("nothing fails"), "there are eight");
+        }
+        for _ in 0..more_jobs {
+            still.advance(&renderer, Duration::ZERO).expect("nothing fails");
+        }
+        still.end();
+        while !still.advance(&renderer, Duration::ZERO).expect("nothing fails") {}
+        (still.pixel_samples().0, still.picture(&renderer).expect("nothing fails").image.rgba)
+    };
+    let (count, two) = ended_after(0);
+    assert_eq!(count, 2);
+    let (mut dropped, mut added) = (0, 0);
+    for more_jobs in 1.. {
+        let (count, picture) = ended_after(more_jobs);
+        match count {
+            2 => assert!(picture == two, "{more_jobs} jobs of the third left something behind"),
+            _ => assert!(picture != two, "the third sample is in it"),
+        }
+        (dropped, added) = (dropped + u32::from(count == 2), added + u32::from(count == 3));
+        if added > 1 {
+            break;
+        }
+    }
+    assert!(dropped > 0, "some were dropped");
 }
 
 #[test]
@@ -239,13 +277,14 @@ fn large_pictures_are_written_in_bands() {
             cube: None,
             region: None,
             frame_secs: 0.1,
+            brightest: None,
             largest_whole,
             about,
         };
         let mut shares = Vec::new();
         let written = file.render(&mut renderer, &mut |share| {
             shares.push(share);
-            true
+            Proceed::On
         });
         assert!(written.expect("it can be rendered"), "nobody gave it up");
         assert!(shares.is_sorted() && shares.last() == Some(&1.0), "{shares:?}");

@@ -1,6 +1,6 @@
 //! What artists expect of a studio: undo, clipboard, snapshots, less to look at, random skies, presets.
 
-use nephoscope::app::action::Shape;
+use nephoscope::app::action::{Shape, Steering};
 
 use crate::*;
 
@@ -15,6 +15,11 @@ fn steps_are_undone_redone_and_listed() {
     editor.harness.run();
     assert_eq!((editor.scene().weather.coverage, editor.scene().sun.elevation_deg), (0.7, begun.sun.elevation_deg));
     editor.press(egui::Key::F8);
+    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Y);
+    editor.harness.run();
+    assert_ne!(editor.scene().sun.elevation_deg, begun.sun.elevation_deg, "the key of other programs");
+    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    editor.harness.run();
     assert!(editor.has_label("edit weather.coverage"), "the list of steps");
     editor.click("history.0");
     assert_eq!(*editor.scene(), begun, "the beginning");
@@ -284,17 +289,44 @@ fn the_sundial_turns_the_sun_and_knows_hours_and_cities() {
 }
 
 #[test]
+fn what_a_crash_left_is_chosen_among_its_copies() {
+    let mut editor = Editor::new();
+    let copy = |name: &str| nephoscope::scene::Preset { name: name.to_owned(), ..Default::default() };
+    let secs = std::time::Duration::from_secs;
+    let copies = vec![(copy("Newest"), secs(20)), (copy("Older"), secs(7400)), (copy("Oldest"), secs(200_000))];
+    editor.harness.state_mut().offer_recovery(copies);
+    editor.harness.run();
+    assert!(editor.has_label("Newest, 20 s ago, the newest") && editor.has_label("Oldest, 2 days ago"));
+    editor.click("recover.1");
+    editor.click_label("Recover");
+    assert_eq!(editor.requests.borrow().last(), Some(&Request::Recover(Some(1))));
+    let session = editor.harness.state();
+    assert!(session.document.preset().name == "Older" && session.document.is_modified(), "unsaved");
+    assert!(!session.has_undecided_recovery());
+}
+
+#[test]
 fn a_still_in_the_making_says_how_far_it_is_and_can_be_given_up() {
     let mut editor = Editor::new();
     editor.harness.state_mut().ui.busy = Some(nephoscope::ui::Busy {
         text: "Rendering a still".to_owned(),
         progress: Some((0.25, Some(75.0))),
-        can_stop: true,
+        steering: Some(Steering::On),
+        end: "Ends with what is done",
     });
     editor.harness.run();
     assert!(editor.has_label("25 % · 0:01:15"), "share and time left");
-    editor.click("busy.cancel");
-    assert_eq!(editor.requests.borrow().last(), Some(&Request::GiveUp));
+    let asks = |editor: &mut Editor, button: &str, wanted: Steering| {
+        editor.click(button);
+        assert_eq!(editor.requests.borrow().last(), Some(&Request::Steer(wanted)), "{button}");
+    };
+    asks(&mut editor, "busy.wait", Steering::Wait);
+    asks(&mut editor, "busy.end", Steering::End);
+    asks(&mut editor, "busy.cancel", Steering::GiveUp);
+    editor.harness.state_mut().ui.busy.as_mut().expect("it is there").steering = Some(Steering::Wait);
+    editor.harness.run();
+    assert!(editor.has_label("25 % · waits"), "no guess of what is left");
+    asks(&mut editor, "busy.wait", Steering::On);
 }
 
 #[test]

@@ -125,6 +125,9 @@ fn exposure_is_metered_and_false_colours_go_as_they_came() {
     let edit = Action::EditScene { key: "display.tone_map".to_owned(), scene: Box::new(scene) };
     editor.harness.state_mut().perform(edit);
     editor.harness.run();
+    assert!(!editor.harness.state().ui.forced().stripes);
+    editor.click("histogram.stripes");
+    assert!(editor.harness.state().ui.forced().stripes && editor.harness.state().ui.forced().is_empty());
     editor.click("histogram.false_colour");
     assert_eq!(editor.scene().display.tone_map, nephoscope::scene::ToneMap::FalseColour);
     editor.harness.key_press_modifiers(COMMAND | egui::Modifiers::SHIFT, egui::Key::E);

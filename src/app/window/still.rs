@@ -1,10 +1,9 @@
 //! The window's part in rendering stills: one at a time, with its progress, and a way out.
 
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use super::super::action::{Export, Shape};
+use super::super::action::{Export, Shape, Steering, Still};
 use super::super::worker::StillJob;
 use super::App;
 use crate::scene::{Projection, Quality, UpdateFraction};
@@ -14,7 +13,7 @@ impl App {
     /// Renders a still on a thread of its own.
     pub(super) fn render_still(&mut self, export: Export) {
         let Some(live) = &self.live else { return };
-        if self.given_up.is_some() {
+        if self.helm.is_some() {
             let said = "One still at a time: wait for the one that is being rendered, or cancel it";
             self.session.ui.toasts.error(said);
             return;
@@ -31,15 +30,21 @@ impl App {
         }
         let text = if export.frames.is_some() { "Rendering a sequence" } else { "Rendering a still" }.to_owned();
         let job = StillJob { gpu: live.gpu.clone(), preset, quality, time_secs: document.time_secs(), export };
-        self.session.ui.busy = Some(Busy { text, progress: Some((0.0, None)), can_stop: true });
-        self.given_up = Some(self.worker.still(job));
+        let end = match (job.export.frames, job.export.still) {
+            (Some(_), _) => "Ends after the frame that is being made",
+            // They are differences of pictures with like samples.
+            (None, Still::LayersExr) => "",
+            (None, _) => "Saves it with the samples of each pixel that it has",
+        };
+        self.session.ui.busy = Some(Busy { text, progress: Some((0.0, None)), steering: Some(Steering::On), end });
+        self.helm = Some(self.worker.still(job));
     }
 
-    /// Gives up the still that is being rendered.
-    pub(super) fn give_up_still(&mut self) {
-        if let Some(given_up) = &self.given_up {
-            given_up.store(true, Ordering::Relaxed);
-        }
+    /// Says what becomes of the still that is being rendered.
+    pub(super) fn steer_still(&mut self, steering: Steering) {
+        let (Some(helm), Some(busy)) = (&self.helm, &mut self.session.ui.busy) else { return };
+        helm.turn(steering);
+        busy.steering = Some(steering);
     }
 
     /// Takes in how far a still is that was begun at a time.
@@ -47,16 +52,18 @@ impl App {
         // A guess is worth nothing before something was done.
         let passed = begun.elapsed().as_secs_f64();
         let left = (share > 0.02).then(|| passed * f64::from(1.0 / share - 1.0));
-        if let Some(busy) = self.session.ui.busy.as_mut().filter(|busy| busy.can_stop) {
+        if let Some(busy) = self.session.ui.busy.as_mut().filter(|busy| busy.steering.is_some()) {
             busy.progress = Some((share, left));
         }
     }
 
     /// Takes in what became of a still.
     pub(super) fn finish_still(&mut self, result: Result<Option<PathBuf>, String>) {
-        (self.given_up, self.session.ui.busy) = (None, None);
+        let has_ended = self.helm.take().is_some_and(|helm| helm.steering() == Steering::End);
+        self.session.ui.busy = None;
         let toasts = &mut self.session.ui.toasts;
         match result {
+            Ok(Some(path)) if has_ended => toasts.info(format!("Saved {} as far as it was", path.display())),
             Ok(Some(path)) => toasts.info(format!("Saved {}", path.display())),
             Ok(None) => toasts.info("Given up; only what was finished is written"),
             Err(error) => toasts.error(error),

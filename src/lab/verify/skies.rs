@@ -342,6 +342,21 @@ pub fn shrink(
     if is_faulty(&still)? {
         least = still;
     }
+    // Whole layers first, the last ones before those that they lie over.
+    for index in (1..least.scene.layers.len()).rev() {
+        let mut next = least.clone();
+        next.scene.layers.remove(index);
+        if is_faulty(&next)? {
+            least = next;
+        }
+    }
+    for index in (1..least.scene.weather.layers.len()).rev() {
+        let mut next = least.clone();
+        next.scene.weather.layers.remove(index);
+        if is_faulty(&next)? {
+            least = next;
+        }
+    }
     let mut target = 0;
     loop {
         let mut next = least.clone();
@@ -379,7 +394,8 @@ mod tests {
 
     #[test]
     fn shrinking_leaves_what_matters() {
-        let drawn = (0..).map(|index| draw(index, 40)).find(|drawn| drawn.scene.air.haze > 19.0).expect("one");
+        let is_wanted = |drawn: &Drawn| drawn.scene.air.haze > 19.0 && drawn.scene.layers.len() > 1;
+        let drawn = (0..).map(|index| draw(index, 40)).find(is_wanted).expect("one");
         let found = shrink(&drawn, &mut |drawn| Ok(drawn.scene.air.haze > 19.0)).expect("no device is asked");
         let haze = found.scene.air.haze;
         let mut plain = Scene::default();
