@@ -1,6 +1,7 @@
 // The density field with its textures bound: the one place where clouds are read.
 #import "cloud/bound.wgsl"
 #import "cloud/costa.wgsl"
+#import "cloud/product.wgsl"
 #import "cloud/profile.wgsl"
 #import "cloud/thesis.wgsl"
 #import "cloud/weather.wgsl"
@@ -14,6 +15,7 @@ const MODEL_THESIS: u32 = 1u;
 const MODEL_UNIFORM: u32 = 2u;
 const MODEL_TEXTURE: u32 = 3u;
 const MODEL_GRID: u32 = 4u;
+const MODEL_PRODUCT: u32 = 5u;
 const DOMAIN_SHELL: u32 = 0u;
 const DOMAIN_FLAT: u32 = 1u;
 const DOMAIN_BOX: u32 = 2u;
@@ -51,6 +53,10 @@ override LAYERS: u32 = 1u;
 // Voxels in the box: of the one layer that is a file; or, baked, of all layers, a channel each.
 #if GRID
 @group(1) @binding(8) var voxels: texture_3d<f32>;
+#endif
+
+#if PRODUCT
+@group(1) @binding(20) var octave_noise: texture_3d<f32>;
 #endif
 
 // How a place is read: what Quality leaves out for speed. Truths read everything at level 0.
@@ -120,10 +126,22 @@ fn domain_exit(p: vec3f, dir: vec3f) -> f32 {
   }
 }
 
+// What a layer draws out along the wind, pressed together again: never farther apart than the places themselves, so that
+// bounds of the map hold.
+fn combed(layer: LayerUniforms, p: vec2f) -> vec2f {
+  return p - layer.combing.xy * (dot(p, layer.combing.xy) * layer.combing.z);
+}
+
+// Where noises are read for a place: fibres lean as the map does, and billows stand upright.
+fn noise_place(layer: LayerUniforms, p: vec3f, h: f32) -> vec3f {
+  let across = combed(layer, p.xz - layer.lean.xy * (h * h * layer.combing.z));
+  return vec3f(across.x, p.y, across.y);
+}
+
 #if MAPLESS
 #else
 fn map_uv(layer: LayerUniforms, p: vec2f, h: f32) -> vec2f {
-  return (p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
+  return combed(layer, p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
 }
 
 // The greatest body where the map's field is at most so much.
@@ -173,7 +191,8 @@ fn cover_at(layer: LayerUniforms, p: vec2f) -> vec2f {
 }
 
 fn weather_at(layer: LayerUniforms, p: vec2f, h: f32) -> Weather {
-  return weather_from_texel(map_texel(layer, p, h), cover_at(layer, p));
+  let weather = weather_from_texel(map_texel(layer, p, h), cover_at(layer, p));
+  return Weather(weather.body, mix(weather.types, layer.form.xyz, layer.form.w), weather.variation);
 }
 #endif
 
@@ -182,7 +201,7 @@ const CURL_FADE: f32 = 0.4;
 
 #if DETAIL
 fn detail_texel(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> vec4f {
-  var q = p * layer.detail_from_world.w + layer.detail_from_world.xyz;
+  var q = noise_place(layer, p, h) * layer.detail_from_world.w + layer.detail_from_world.xyz;
 #if CURL
   if (layer.curl_from_world.w > 0.0 && reading.fade < CURL_FADE) {
     count_read();
@@ -210,7 +229,7 @@ fn profile_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
   }
   clear_way = 0.0;
   count_read();
-  let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
+  let tile = noise_place(layer, p, h) * layer.shape_from_world.w + layer.shape_from_world.xyz;
   let noise = textureSampleLevel(shape_noise, linear_repeat, tile, reading.level);
   var field = billowed(profile, noise, weather, layer);
   if (field <= 0.0) {
@@ -247,7 +266,7 @@ fn thesis_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readin
   }
   clear_way = 0.0;
   count_read();
-  let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
+  let tile = noise_place(layer, p, h) * layer.shape_from_world.w + layer.shape_from_world.xyz;
   var field = thesis_field(profile, textureSampleLevel(worley_noise, linear_repeat, tile, reading.level), weather, layer);
 #if DETAIL
   if (field > 0.0 && thesis_near_surface(field, layer) && layer.detail_strength > 0.0) {
@@ -277,7 +296,7 @@ fn texture_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
     return 0.0;
   }
   count_read();
-  let tile = p * layer.shape_from_world.w + layer.shape_from_world.xyz;
+  let tile = noise_place(layer, p, h) * layer.shape_from_world.w + layer.shape_from_world.xyz;
   density = costa_shaped(density, textureSampleLevel(shape_noise, linear_repeat, tile, reading.level), layer);
 #if DETAIL
   if (density > 0.0 && layer.detail_strength > 0.0) {
@@ -289,6 +308,48 @@ fn texture_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
   }
 #endif
   return costa_density(density, layer);
+}
+#endif
+
+#if PRODUCT
+// Texels of the octaves' noise that are as wide as the step at which noises are read at their finest level, in tiles.
+const FINEST_OCTAVE: f32 = 1200.0;
+
+// A sum of octaves, 0..1: of Perlin noise in channels 0 and 2, of Voronoi noise in 1 and 3, which take turns.
+fn octaves_at(q: vec3f, from_world: vec4f, octaves: vec4f, channel: u32, level: f32) -> f32 {
+  var sum = 0.0;
+  var weight = 0.0;
+  var amplitude = 1.0;
+  var frequency = 1.0;
+  let place = q * from_world.w + from_world.xyz;
+  for (var i = 0u; i < u32(octaves.x); i++) {
+    count_read();
+    let own = max(level + log2(FINEST_OCTAVE * from_world.w * frequency), 0.0);
+    let noise = textureSampleLevel(octave_noise, linear_repeat, place * frequency, own);
+    sum += amplitude * noise[channel + 2u * (i % 2u)];
+    weight += amplitude;
+    amplitude *= octaves.y;
+    frequency *= octaves.z;
+  }
+  return sum / max(weight, 1e-6);
+}
+
+fn product_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
+  let mask = weather_at(layer, p.xz, h).body;
+  if (mask <= 0.0) {
+    note_clear(index, p.xz, h, reading);
+    return 0.0;
+  }
+  clear_way = 0.0;
+  let q = noise_place(layer, p, h);
+  let voronoi = octaves_at(q, layer.voronoi_from_world, layer.voronoi_octaves, 1u, reading.level);
+  if (voronoi <= layer.voronoi_octaves.w) {
+    clearness = min(clearness, 4.0 * (layer.voronoi_octaves.w - voronoi));
+    return 0.0;
+  }
+  let perlin = octaves_at(q, layer.perlin_from_world, layer.perlin_octaves, 0u, reading.level);
+  clearness = min(clearness, max(4.0 * (layer.perlin_octaves.w - perlin), 0.0));
+  return product_density(perlin, voronoi, mask, layer);
 }
 #endif
 
@@ -336,6 +397,11 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
     clear_way = 0.0;
   }
 #endif
+#if PRODUCT
+  if (layer.model == MODEL_PRODUCT) {
+    density = product_at(index, layer, p, h, reading);
+  }
+#endif
 #if UNIFORM
   if (layer.model == MODEL_UNIFORM) {
     density = weather_at(layer, p.xz, h).body;
@@ -381,6 +447,9 @@ fn density_bound(layer: LayerUniforms, greatest_body: f32) -> f32 {
   if (layer.model == MODEL_TEXTURE) {
     bound = costa_bound(greatest_body, layer);
   }
+  if (layer.model == MODEL_PRODUCT) {
+    bound = product_bound(greatest_body, layer);
+  }
   return bound * layer.density_scale;
 }
 
@@ -397,15 +466,20 @@ fn density_bound_between(
   }
   let lowest = clamp(low, 0.0, 1.0);
   let highest = clamp(high, 0.0, 1.0);
+  let types = mix(possible.types, layer.form.xyz, layer.form.w);
+  let formed = PossibleTypes(types, possible.variation);
   var bound = body;
   if (layer.model == MODEL_PROFILE) {
-    bound = profile_bound_between(body, possible, layer, lowest, highest);
+    bound = profile_bound_between(body, formed, layer, lowest, highest);
   }
   if (layer.model == MODEL_THESIS) {
-    bound = thesis_bound_between(body, possible, layer, lowest, highest);
+    bound = thesis_bound_between(body, formed, layer, lowest, highest);
   }
   if (layer.model == MODEL_TEXTURE) {
     bound = costa_bound(body, layer);
+  }
+  if (layer.model == MODEL_PRODUCT) {
+    bound = product_bound(body, layer);
   }
   return bound * layer.density_scale;
 }

@@ -384,7 +384,7 @@ fn describe(preset: &Preset, values: String, bounds: Bounds, [width, height]: [u
         bounds: Some(bounds.map(|corner| corner.map(f64::from))),
         metres_per_unit: Some(1.0),
         extinction_scale: 1.0,
-        albedo: f64::from(layer.scattering_per_m) / f64::from(layer.extinction_per_m()),
+        albedo: f64::from(layer.scattering()) / f64::from(layer.extinction_per_m()),
         phase: PhaseDescription {
             kind: Some(layer.phase.kind),
             g: layer.phase.g.into(),

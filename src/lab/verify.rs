@@ -123,6 +123,7 @@ fn single_scattering(scene: &Scene) -> Scene {
     single.air.aerial_perspective = false;
     single.sunshafts.strength = 0.0;
     for layer in &mut single.layers {
+        *layer = layer.with_given_optics();
         layer.shadow_extinction_scale = 1.0;
         layer.scattering_per_m *= THINNING;
         layer.absorption_per_m *= THINNING;

@@ -105,6 +105,9 @@ effects! {
     Texture ("weather texture model", "Clouds of Costa's weather texture.") {
         flags: ["TEXTURE"], bindings: [], passes: []
     }
+    Product ("Perlin × Voronoi model", "Clouds of Thomann's two noises.") {
+        flags: ["PRODUCT"], bindings: ["octave_noise"], passes: ["bake_octave"]
+    }
     ShapeNoise ("large noise", "Billows of the profile model and of the weather texture.") {
         flags: [], bindings: ["shape_noise"], passes: ["bake_shape"], essential: true
     }

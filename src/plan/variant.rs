@@ -51,6 +51,8 @@ pub struct MarchVariant {
     pub uniform: bool,
     /// Some layer has Costa's model, which reads the large noise as well.
     pub texture: bool,
+    /// Some layer is Perlin times Voronoi noise, summed from octaves.
+    pub product: bool,
     /// Some layer is the voxels of a file.
     pub grid: bool,
     /// All layers are read from voxels that were baked before, so many from west to east.
@@ -85,8 +87,8 @@ pub struct MarchVariant {
 
 impl MarchVariant {
     /// Every flag of the density field.
-    const FIELD_FLAGS: [&'static str; 10] =
-        ["PROFILE", "THESIS", "UNIFORM", "TEXTURE", "GRID", "BAKED", "MAPLESS", "DETAIL", "CURL", "FRONT"];
+    const FIELD_FLAGS: [&'static str; 11] =
+        ["PROFILE", "THESIS", "UNIFORM", "TEXTURE", "PRODUCT", "GRID", "BAKED", "MAPLESS", "DETAIL", "CURL", "FRONT"];
 
     /// The variant that reads a frame's layers, or `None` where none can hold cloud. What only light and the march itself
     /// need is left out of it until [`Self::marched`].
@@ -105,6 +107,7 @@ impl MarchVariant {
         let thesis = model(Effect::Thesis, DensityModel::Thesis);
         let uniform = model(Effect::Uniform, DensityModel::Uniform);
         let texture = model(Effect::Texture, DensityModel::Texture);
+        let product = model(Effect::Product, DensityModel::Product);
         let grid = has(DensityModel::Grid);
         why.unless(Effect::Grid, &[(!grid, Need::Impossible, "no layer names a file")], "some layer has it");
         why.unless(
@@ -114,7 +117,7 @@ impl MarchVariant {
         );
         let has_heights = scene.weather.layers.iter().any(|map| map.source != MapSource::Generated);
         let baked = baked(frame, why);
-        let reads_map = any(CloudLayer::reads_map) || profile || thesis || uniform || texture;
+        let reads_map = any(CloudLayer::reads_map) || profile || thesis || uniform || texture || product;
         let of_map = if texture && !has_heights {
             "it holds no heights for the weather texture: set its source to a weather texture or an image"
         } else {
@@ -152,6 +155,7 @@ impl MarchVariant {
             thesis,
             uniform,
             texture,
+            product,
             grid,
             baked,
             mapless: !reads_map,
@@ -179,9 +183,8 @@ impl MarchVariant {
         why: &mut Verdicts,
     ) -> Self {
         let (scene, quality) = (frame.scene, frame.quality);
-        let scatters = |gain: fn(&CloudLayer) -> f32| {
-            scene.visible_layers().any(|layer| layer.scattering_per_m * gain(layer) > 0.0)
-        };
+        let scatters =
+            |gain: fn(&CloudLayer) -> f32| scene.visible_layers().any(|layer| layer.scattering() * gain(layer) > 0.0);
         let shines = scatters(|layer| layer.brightness * layer.phase_gain);
         let lit = why.unless(
             Effect::KeyLight,
@@ -285,6 +288,7 @@ impl MarchVariant {
             thesis: false,
             uniform: false,
             texture: false,
+            product: false,
             grid: true,
             mapless: true,
             detail: false,
@@ -323,6 +327,7 @@ impl MarchVariant {
             seen.thesis,
             seen.uniform,
             seen.texture,
+            seen.product,
             seen.grid,
             seen.baked.is_some(),
             seen.mapless,

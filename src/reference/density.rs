@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3, Vec4, Vec4Swizzles as _};
 
-use super::noise::{perlin_fbm, worley, worley_cell};
+use super::noise::{perlin, perlin_fbm, worley, worley_cell};
 use super::random::{pcg3d, unit_from_bits};
 use crate::render::uniforms::other::MapUniforms;
 use crate::render::uniforms::scene::LayerUniforms;
@@ -197,6 +197,21 @@ pub fn costa(coverage: f32, texel: Vec4, noises: [Vec4; 2], layer: &LayerUniform
     let shaped = coverage * signal * mix(1.0, shape, layer.shape_strength.min(1.0)) * layer.shape_strength.max(1.0);
     let eroded = shaped - mix(octaves(small.w, small.x, small.y), 0.5, fade) * layer.detail_strength;
     [shaped, (eroded * layer.sharpness).clamp(0.0, 1.0)]
+}
+
+/// Twin of `product_density`: both noises above their thresholds, multiplied (Thomann 2020, listing 15).
+#[must_use]
+pub fn product(perlin: f32, voronoi: f32, mask: f32, layer: &LayerUniforms) -> f32 {
+    let hills = (perlin - layer.perlin_octaves.w).max(0.0);
+    let heaps = (voronoi - layer.voronoi_octaves.w).max(0.0);
+    (layer.product_gain.x * hills * heaps).clamp(0.0, 1.0) * mask
+}
+
+/// What `pass/bake_octave.wgsl` holds at a place in tiles: Perlin noise and Voronoi noise of even and of odd octaves.
+#[must_use]
+pub fn octave(p: Vec3) -> [[f32; 2]; 2] {
+    let pair = |seed: u32| [(perlin(p, 8, seed) * 1.2 + 0.5).clamp(0.0, 1.0), worley(p, 8, seed + 2)];
+    [pair(301), pair(302)]
 }
 
 fn type_of_cell(id: u32, map: &MapUniforms) -> Vec3 {

@@ -9,6 +9,7 @@ use crate::plan::{FramePlan, MarchVariant};
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 const SHAPE_SIDE: u32 = 128;
 const WORLEY_SIDE: u32 = 64;
+const OCTAVE_SIDE: u32 = 64;
 const DETAIL_SIDE: u32 = 32;
 const CURL_SIDE: u32 = 128;
 const RELIEF_SIDE: u32 = 512;
@@ -21,6 +22,7 @@ pub(super) struct Bakes {
     linear_clamp: wgpu::Sampler,
     shape: Option<Texture>,
     worley: Option<Texture>,
+    octave: Option<Texture>,
     detail: Option<Texture>,
     curl: Option<Texture>,
     /// The relief and the seed it was made from.
@@ -43,6 +45,7 @@ impl Bakes {
             linear_clamp: sampler(gpu, "linear_clamp", wgpu::AddressMode::ClampToEdge),
             shape: None,
             worley: None,
+            octave: None,
             detail: None,
             curl: None,
             relief: None,
@@ -63,6 +66,7 @@ impl Bakes {
         let kept = march.is_none() && plan.holds_clouds;
         noise_3d(context, &mut self.shape, (wants(MarchVariant::reads_shape), kept), &SHAPE, jobs)?;
         noise_3d(context, &mut self.worley, (wants(|march| march.thesis), kept), &WORLEY, jobs)?;
+        noise_3d(context, &mut self.octave, (wants(|march| march.product), kept), &OCTAVE, jobs)?;
         noise_3d(context, &mut self.detail, (wants(|march| march.detail), kept), &DETAIL, jobs)?;
         if !wants(|march| march.curl) {
             self.curl = self.curl.take().filter(|_| kept);
@@ -108,6 +112,7 @@ impl Bakes {
         let optional = [
             ("bake_shape", self.shape.as_ref()),
             ("bake_worley", self.worley.as_ref()),
+            ("bake_octave", self.octave.as_ref()),
             ("bake_detail", self.detail.as_ref()),
             ("bake_curl", self.curl.as_ref()),
             ("bake_terrain", self.relief.as_ref().map(|(_, texture)| texture)),
@@ -125,6 +130,7 @@ impl Bakes {
         let optional = [
             ("shape_noise", self.shape.as_ref()),
             ("worley_noise", self.worley.as_ref()),
+            ("octave_noise", self.octave.as_ref()),
             ("detail_noise", self.detail.as_ref()),
             ("curl_noise", self.curl.as_ref()),
             ("terrain_map", self.relief.as_ref().map(|(_, texture)| texture)),
@@ -139,7 +145,8 @@ impl Bakes {
 
     /// Device memory in bytes.
     pub(super) fn bytes(&self) -> u64 {
-        let optional = [self.shape.as_ref(), self.worley.as_ref(), self.detail.as_ref(), self.curl.as_ref()];
+        let [shape, worley, octave] = [self.shape.as_ref(), self.worley.as_ref(), self.octave.as_ref()];
+        let optional = [shape, worley, octave, self.detail.as_ref(), self.curl.as_ref()];
         let relief = self.relief.as_ref().map(|(_, texture)| texture);
         self.blue_noise.bytes() + optional.into_iter().chain([relief]).flatten().map(Texture::bytes).sum::<u64>()
     }
@@ -152,9 +159,10 @@ pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
     let all = [
         (SHAPE.file, wants(MarchVariant::reads_shape)),
         (WORLEY.file, wants(|march| march.thesis)),
+        (OCTAVE.file, wants(|march| march.product)),
         (DETAIL.file, wants(|march| march.detail)),
         ("pass/bake_curl.wgsl", wants(|march| march.curl)),
-        ("pass/bake_mip.wgsl", wants(|march| march.reads_shape() || march.thesis || march.detail)),
+        ("pass/bake_mip.wgsl", wants(|march| march.reads_shape() || march.thesis || march.product || march.detail)),
         ("pass/bake_terrain.wgsl", plan.ground.is_some_and(|ground| ground.terrain)),
         ("pass/weather_map.wgsl", wants(|march| !march.mapless)),
         ("pass/weather_blend.wgsl", wants(|march| !march.mapless)),
@@ -176,6 +184,7 @@ struct Noise {
 
 const SHAPE: Noise = Noise { pass: "bake_shape", file: "pass/bake_shape.wgsl", side: SHAPE_SIDE, levels: 5 };
 const WORLEY: Noise = Noise { pass: "bake_worley", file: "pass/bake_worley.wgsl", side: WORLEY_SIDE, levels: 4 };
+const OCTAVE: Noise = Noise { pass: "bake_octave", file: "pass/bake_octave.wgsl", side: OCTAVE_SIDE, levels: 4 };
 const DETAIL: Noise = Noise { pass: "bake_detail", file: "pass/bake_detail.wgsl", side: DETAIL_SIDE, levels: 4 };
 
 fn noise_3d(

@@ -92,6 +92,8 @@ fn in_place(layer: LayerUniforms) -> LayerUniforms {
         shape_from_world: glam::Vec4::ZERO,
         detail_from_world: glam::Vec4::ZERO,
         curl_from_world: glam::Vec4::ZERO,
+        perlin_from_world: glam::Vec4::ZERO,
+        voronoi_from_world: glam::Vec4::ZERO,
         ..layer
     }
 }

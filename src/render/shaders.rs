@@ -40,6 +40,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         "PHASE_SCHLICK",
         "PHASE_TWO_LOBES",
         "PLAIN",
+        "PRODUCT",
         "PROFILE",
         "SAMPLES",
         "SHADOW",

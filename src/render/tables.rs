@@ -16,6 +16,8 @@ choices! {
         ShapeNoise ("shape-noise"),
         /// Cells of the thesis's model, in slices.
         WorleyNoise ("worley-noise"),
+        /// One octave of Perlin (red, blue) and Voronoi noise (green, alpha), slice by slice, of the model of their product.
+        OctaveNoise ("octave-noise"),
         /// The small noise, in slices.
         DetailNoise ("detail-noise"),
         /// The noise that stirs the small one.
@@ -59,6 +61,7 @@ impl Renderer {
             TableKind::WeatherMap => self.weather.map(),
             TableKind::ShapeNoise => baked("bake_shape"),
             TableKind::WorleyNoise => baked("bake_worley"),
+            TableKind::OctaveNoise => baked("bake_octave"),
             TableKind::DetailNoise => baked("bake_detail"),
             TableKind::CurlNoise => baked("bake_curl"),
             TableKind::Relief => baked("bake_terrain"),

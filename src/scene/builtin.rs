@@ -46,7 +46,23 @@ pub const BUILTINS: &[Builtin] = builtins![
     "stormy",
     "moonlit",
     "above_clouds",
+    "cirrus",
+    "cirrocumulus",
+    "cirrostratus",
+    "altocumulus",
+    "altostratus",
+    "nimbostratus",
+    "cumulonimbus",
+    "mackerel_sunset",
+    "mares_tails",
     "thesis",
+    "box_afternoon",
+    "box_day",
+    "box_puffy",
+    "box_night",
+    "box_sunset",
+    "box_clear",
+    "box_stormy",
 ];
 
 /// The built-in preset of that name.

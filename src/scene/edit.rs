@@ -1,8 +1,9 @@
 //! Reaches parameters by key: `--set layers.0.base_m=900`, lists of all keys, and the range check of a scene in memory.
 
 use super::bounds::{Fault, colour_fault, count_fault, float_fault, range_phrase};
+use super::genus::Genus;
 use super::nearest::did_you_mean;
-use super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
+use super::param::{Choice as _, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
 use super::{MAX_LAYERS, Quality, Scene};
 
 /// Why a parameter was not set. The scene is unchanged.
@@ -78,7 +79,8 @@ pub fn split(assignment: &str) -> Result<(&str, &str), EditError> {
     Ok((key.trim(), value.trim()))
 }
 
-/// Applies `key=value` assignments in order; keys that begin with `quality.` go to the quality.
+/// Applies `key=value` assignments in order; keys that begin with `quality.` go to the quality. `genus=Cirrus` gives the sky the
+/// clouds of a genus, `genus=+Cirrus` adds them to its own.
 ///
 /// # Errors
 /// See [`EditError`]; the assignments before the refused one stay applied.
@@ -87,11 +89,26 @@ pub fn apply(assignments: &[String], scene: &mut Scene, quality: &mut Quality) -
     for assignment in assignments {
         let (key, value) = split(assignment)?;
         match key.strip_prefix(QUALITY) {
+            None if key == "genus" => set_genus(scene, value)?,
             Some(key) => set(quality, key, value).map_err(|error| error.below(QUALITY))?,
             None => set(scene, key, value)?,
         }
     }
     scene.problems().into_iter().next().map_or(Ok(()), |problem| Err(EditError::Rule(problem)))
+}
+
+fn set_genus(scene: &mut Scene, value: &str) -> Result<(), EditError> {
+    let name = value.trim().trim_start_matches('+').trim();
+    let Some(genus) = Genus::ALL.iter().find(|genus| genus.name().eq_ignore_ascii_case(name)) else {
+        let names: Vec<&str> = Genus::ALL.iter().map(|genus| genus.name()).collect();
+        let expected = format!("one of {}, with + before it to add it", names.join(", "));
+        return Err(EditError::WrongType { key: "genus".to_owned(), value: value.to_owned(), expected });
+    };
+    if value.trim().starts_with('+') {
+        return genus.join(scene).map_err(|error| EditError::Rule(error.to_string()));
+    }
+    genus.replace(scene);
+    Ok(())
 }
 
 /// Sets the parameter with that key to the value written as in a preset; a file name may go without quotes. The item
@@ -428,6 +445,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_genus_replaces_clouds_or_joins_them() {
+        let (mut scene, mut quality) = (Scene::default(), Quality::default());
+        let mut set =
+            |assignment: &str| apply(&[assignment.to_owned()], &mut scene, &mut quality).map(|()| scene.clone());
+        let cirrus = set("genus=cirrus").expect("case does not matter");
+        assert!(cirrus.layers.len() == 1 && cirrus.layers[0].base_m > 5000.0, "high");
+        let both = set("genus=+Cumulonimbus").expect("there is room");
+        assert_eq!((both.layers.len(), both.layers[0] == cirrus.layers[0]), (3, true));
+        assert!(set("genus=+Nimbostratus").expect_err("full").to_string().contains("more than 4 cloud layers"));
+        let error = set("genus=Cirus").expect_err("a slip").to_string();
+        assert!(error.contains("Cirrocumulus") && error.contains("Cirus"), "{error}");
+    }
+
+    #[test]
     fn every_type_can_be_set() {
         let mut scene = Scene::default();
         for (key, value) in [
@@ -477,7 +508,7 @@ mod tests {
             (
                 "layers.0.model",
                 "thesis",
-                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform, Texture, Grid",
+                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform, Texture, Grid, Product",
             ),
             ("layers.3.base_m", "1", "layers: the list has 1 item(s), so the index may be at most 1"),
             (

@@ -16,6 +16,32 @@ choices! {
         Texture ("Weather texture"),
         /// Voxels of a file, in a box.
         Grid ("Voxel grid"),
+        /// Octaves of Perlin noise times octaves of Voronoi noise, in a box or wherever the map has cloud (Thomann 2020, section 6.3).
+        Product ("Perlin × Voronoi"),
+    }
+}
+
+choices! {
+    /// What kind of cloud a layer's bodies are.
+    pub enum BodyForm {
+        /// What the weather map says at each place.
+        Map ("As the map says"),
+        /// Heaps whose tops rise with their width.
+        Cumulus ("Heaps"),
+        /// A flat sheet in the lower third of the layer.
+        Stratus ("Sheet"),
+        /// Rolls and tiles up to the middle of the layer.
+        Stratocumulus ("Rolls and tiles"),
+    }
+}
+
+choices! {
+    /// What a layer's extinction is computed from.
+    pub enum Optics {
+        /// Scattering and absorption per metre, as they are given.
+        Given ("As given"),
+        /// Water and droplets in each cubic metre; scattering per metre follows.
+        Droplets ("From water and droplets"),
     }
 }
 
@@ -52,6 +78,46 @@ params! {
 }
 
 params! {
+    /// The sum of octaves of Perlin noise in the model *Perlin × Voronoi*.
+    pub struct PerlinOctaves ("Perlin octaves") {
+        /// Size of a cell of the first octave.
+        size_m: f32 = 900.0, 20.0..=50_000.0, Metres, logarithmic;
+        /// Number of octaves.
+        octaves: u32 = 4, 1..=8, None;
+        /// Amplitude of each octave relative to the one before.
+        persistence: f32 = 0.5, 0.0..=1.0, None;
+        /// Frequency of each octave relative to the one before; whole, so that the noise repeats without a seam.
+        lacunarity: u32 = 2, 1..=4, None;
+        /// Shift of the noise, up and across.
+        shift_m: f32 = 0.0, -100_000.0..=100_000.0, Metres;
+        /// What is taken from the sum.
+        threshold: f32 = 0.4, 0.0..=1.0, None;
+        /// Factor of what is left.
+        multiplier: f32 = 3.0, 0.0..=20.0, None;
+    }
+}
+
+params! {
+    /// The sum of octaves of Voronoi noise in the model *Perlin × Voronoi*: 1 at the cells' points, towards 0 between them.
+    pub struct VoronoiOctaves ("Voronoi octaves") {
+        /// Size of a cell of the first octave.
+        size_m: f32 = 450.0, 20.0..=50_000.0, Metres, logarithmic;
+        /// Number of octaves.
+        octaves: u32 = 3, 1..=8, None;
+        /// Amplitude of each octave relative to the one before.
+        persistence: f32 = 0.45, 0.0..=1.0, None;
+        /// Frequency of each octave relative to the one before; whole, so that the noise repeats without a seam.
+        lacunarity: u32 = 2, 1..=4, None;
+        /// Shift of the noise, up and across.
+        shift_m: f32 = 0.0, -100_000.0..=100_000.0, Metres;
+        /// What is taken from the sum.
+        threshold: f32 = 0.3, 0.0..=1.0, None;
+        /// Factor of what is left.
+        multiplier: f32 = 2.0, 0.0..=20.0, None;
+    }
+}
+
+params! {
     /// One sheet of cloud between two heights.
     pub struct CloudLayer ("Cloud layer") {
         /// Whether the layer is drawn.
@@ -66,6 +132,10 @@ params! {
         top_m: f32 = 2700.0, 10.0..=20_000.0, Metres;
         /// Added to the coverage of the weather map for this layer.
         coverage_offset: f32 = 0.0, -1.0..=1.0, None;
+        /// What kind of cloud its bodies are: for the models *Profile* and *Thesis*.
+        form: BodyForm = BodyForm::Map;
+        /// How far map and noises are drawn out along the wind, and lean with the tops: fibres of ice above 4 or so.
+        stretch: f32 = 1.0, 1.0..=20.0, None, logarithmic;
         /// Width of the soft edge of a cloud body, as a part of the map's range.
         edge_softness: f32 = 0.26, 0.02..=1.0, None;
         /// Size of this layer's copy of the weather map, relative to the map's own.
@@ -92,10 +162,20 @@ params! {
         curl_m: f32 = 60.0, 0.0..=1000.0, Metres;
         /// Edge length of the tile of the curl noise.
         curl_size_m: f32 = 1500.0, 50.0..=50_000.0, Metres, logarithmic;
+        /// Octaves of Perlin noise, for that model only.
+        perlin: PerlinOctaves = PerlinOctaves::default();
+        /// Octaves of Voronoi noise, for that model only.
+        voronoi: VoronoiOctaves = VoronoiOctaves::default();
         /// Artists' multiplier of the density.
         density: f32 = 1.0, 0.0..=10.0, None;
         /// Steepness of the step from clear air to full density.
         sharpness: f32 = 1.0, 0.1..=4.0, None;
+        /// What scattering per metre comes from.
+        optics: Optics = Optics::Given;
+        /// Liquid water, or ice, in a cubic metre of air at full density, in grams. For optics from droplets.
+        water_g_per_m3: f32 = 0.35, 0.0001..=5.0, None, logarithmic;
+        /// Droplets, or crystals, in a cubic centimetre of air. For optics from droplets.
+        droplets_per_cm3: f32 = 400.0, 0.001..=5000.0, None, logarithmic;
         /// Light scattered per metre at full density.
         scattering_per_m: f32 = 0.08, 0.0..=1.0, PerMetre, logarithmic;
         /// Light absorbed per metre at full density. Water droplets absorb almost nothing.
@@ -111,7 +191,7 @@ params! {
         /// Speed of this layer relative to the wind.
         wind_scale: f32 = 1.0, -4.0..=4.0, None;
         /// Sideways lean of the tops downwind, over the height of the layer.
-        lean_m: f32 = 300.0, 0.0..=5000.0, Metres;
+        lean_m: f32 = 300.0, 0.0..=20_000.0, Metres;
     }
 }
 
@@ -141,14 +221,38 @@ impl CloudLayer {
         self.model != DensityModel::Grid
     }
 
+    /// Effective radius of its droplets in micrometres: that of equal droplets, broader by k = 0.8 (Martin, Johnson and Spice
+    /// 1994). Ice counts as water.
+    pub fn effective_radius_um(&self) -> f32 {
+        const BROADENING: f32 = 0.8;
+        // Grams over a density of a million grams in a cubic metre, and a million cubic centimetres in it.
+        let volume_m3 = self.water_g_per_m3 * 1e-6 / (self.droplets_per_cm3 * 1e6);
+        1e6 * (3.0 * volume_m3 / (4.0 * std::f32::consts::PI) / BROADENING).cbrt()
+    }
+
+    /// Light scattered per metre at full density. Of droplets: 3 Q w / (4 ρ r), w the water in a volume, r the effective radius,
+    /// with the efficiency Q = 2 of whatever is large against the wavelength (Stephens 1978).
+    pub fn scattering(&self) -> f32 {
+        match self.optics {
+            Optics::Given => self.scattering_per_m,
+            Optics::Droplets => 1.5 * self.water_g_per_m3 / self.effective_radius_um(),
+        }
+    }
+
+    /// Scattering as given, whatever it came from.
+    pub fn with_given_optics(&self) -> Self {
+        Self { optics: Optics::Given, scattering_per_m: self.scattering(), ..self.clone() }
+    }
+
     /// Light lost per metre at full density.
     pub fn extinction_per_m(&self) -> f32 {
-        self.scattering_per_m + self.absorption_per_m
+        self.scattering() + self.absorption_per_m
     }
 
     /// Whether the small noise is read.
     pub fn has_detail(&self) -> bool {
-        self.detail_strength > 0.0 && !matches!(self.model, DensityModel::Uniform | DensityModel::Grid)
+        self.detail_strength > 0.0
+            && !matches!(self.model, DensityModel::Uniform | DensityModel::Grid | DensityModel::Product)
     }
 
     /// Whether curl noise drags the small noise.

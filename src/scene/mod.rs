@@ -12,6 +12,7 @@ mod cube;
 pub mod edit;
 pub mod expression;
 mod frame;
+pub mod genus;
 mod layer;
 mod light;
 pub mod morph;
@@ -28,7 +29,7 @@ mod weather;
 pub use animation::{Animation, DURATION_RANGE_SECS, Ease, Keyframe, SPEED_RANGE, Track, can_move};
 pub use cube::{CUBE_FACES, CubeFace};
 pub use frame::{Frame, LARGEST_WHOLE_PX, Output, Window};
-pub use layer::{CloudLayer, DensityModel, Phase, PhaseKind};
+pub use layer::{BodyForm, CloudLayer, DensityModel, Optics, PerlinOctaves, Phase, PhaseKind, VoronoiOctaves};
 pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};
 pub use place::{Camera, Display, Domain, DomainKind, FALSE_COLOURS, FieldOfViewAxis, Ground, Projection, ToneMap};
 pub use preset::{

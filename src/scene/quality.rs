@@ -58,7 +58,7 @@ params! {
         /// Clear air is crossed in one step as far as the weather map promises it.
         skip_clear: bool = true;
         /// Greatest distance at which clouds are drawn.
-        max_distance_m: f32 = 150_000.0, 1000.0..=500_000.0, Metres, logarithmic;
+        max_distance_m: f32 = 350_000.0, 1000.0..=500_000.0, Metres, logarithmic;
         /// Steps from a sample towards the light; up to five times as many where layers are thick or the light is low.
         light_steps: u32 = 20, 1..=128, None;
         /// Longest way covered towards the light; shorter where it leaves the clouds before.

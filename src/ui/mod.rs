@@ -5,6 +5,7 @@ mod clipboard;
 mod command;
 mod dialogs;
 mod export_form;
+mod genera;
 mod guides;
 mod histogram;
 mod history;

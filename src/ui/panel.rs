@@ -35,7 +35,8 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: 
         quality_section(ui, filter, quality, &mut actions);
         let mut scene = scene.clone();
         if text.is_empty() && !filter.modified {
-            sundial_section(ui, &mut scene, &mut actions);
+            own_section(ui, &SUNDIAL, &mut scene, &mut actions);
+            own_section(ui, &GENERA, &mut scene, &mut actions);
         }
         let mut rows = Rows::new(ui, filter, String::new());
         scene.visit(&mut rows);
@@ -126,14 +127,29 @@ fn quality_section(ui: &mut Ui, filter: Filter<'_>, quality: &Quality, actions: 
     }
 }
 
-const SUNDIAL: &str = "sundial.section";
+/// A section above all rows that is no group of parameters.
+struct OwnSection {
+    key: &'static str,
+    heading: Heading<'static>,
+    /// Draws it, and returns the key of what was changed in the scene.
+    show: fn(&mut Ui, &mut Scene) -> Option<&'static str>,
+}
 
-/// The sun on a dial, above all rows.
-fn sundial_section(ui: &mut Ui, scene: &mut Scene, actions: &mut Vec<Action>) {
-    let heading = Heading { title: "Sundial", doc: "The sun’s place by a drag, by the hour, or by a city." };
+const SUNDIAL: OwnSection = OwnSection {
+    key: "sundial.section",
+    heading: Heading { title: "Sundial", doc: "The sun’s place by a drag, by the hour, or by a city." },
+    show: super::sundial::show,
+};
+const GENERA: OwnSection = OwnSection {
+    key: "genera.section",
+    heading: Heading { title: "Genera", doc: "The ten genera of clouds, by name and by their water." },
+    show: super::genera::show,
+};
+
+fn own_section(ui: &mut Ui, section: &OwnSection, scene: &mut Scene, actions: &mut Vec<Action>) {
     let mut changed = None;
     let mut outer = Rows::new(ui, Filter::default(), String::new());
-    outer.section(heading, SUNDIAL, None, &mut |ui, _| changed = super::sundial::show(ui, scene));
+    outer.section(section.heading, section.key, None, &mut |ui, _| changed = (section.show)(ui, scene));
     if let Some(key) = changed {
         actions.push(Action::EditScene { key: key.to_owned(), scene: Box::new(scene.clone()) });
     }
@@ -209,8 +225,7 @@ impl<'u> Rows<'u> {
             row::name(ui, &response, &format!("{} section", heading.title), key);
             toggle = response.clicked();
             let mut reset = false;
-            // The sundial is no section of parameters.
-            if key != SUNDIAL {
+            if ![SUNDIAL.key, GENERA.key].contains(&key) {
                 let modified = buttons.is_some_and(|(_, modified)| modified);
                 clipboard::menu(&response, key, heading.title, (modified, false), &mut reset);
                 if response.contains_pointer() {

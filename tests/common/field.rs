@@ -71,6 +71,7 @@ pub(crate) fn map_uniforms(seed: u32) -> MapUniforms {
 pub(crate) struct Field {
     pub(crate) shape: Texture,
     pub(crate) worley: Texture,
+    pub(crate) octave: Texture,
     pub(crate) detail: Texture,
     pub(crate) curl: Texture,
     pub(crate) map: Texture,
@@ -92,6 +93,7 @@ impl Field {
             Self {
                 shape: cube("pass/bake_shape.wgsl", 128),
                 worley: cube("pass/bake_worley.wgsl", 64),
+                octave: cube("pass/bake_octave.wgsl", 64),
                 detail: cube("pass/bake_detail.wgsl", 32),
                 curl,
                 map: weather_map(&map_uniforms(1)),
@@ -105,6 +107,7 @@ impl Field {
         vec![
             ("shape_noise", view_of(&self.shape)),
             ("worley_noise", view_of(&self.worley)),
+            ("octave_noise", view_of(&self.octave)),
             ("detail_noise", view_of(&self.detail)),
             ("curl_noise", view_of(&self.curl)),
         ]

@@ -14,6 +14,7 @@ pub(crate) const BOX: u32 = 2;
 pub(crate) const PROFILE: u32 = 0;
 pub(crate) const THESIS: u32 = 1;
 pub(crate) const UNIFORM: u32 = 2;
+pub(crate) const PRODUCT: u32 = 5;
 pub(crate) const RADIUS_M: f32 = 6.36e6;
 /// All rays of one march take the same direction; each has a jitter of its own.
 const SIDE: u32 = 8;

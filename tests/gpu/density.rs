@@ -1,14 +1,14 @@
 //! The density models: against their twins, under their bound, and at the ends of coverage.
 
 use bytemuck::Zeroable as _;
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec3Swizzles as _, Vec4};
 use nephoscope::gpu::{ProgramKey, readback};
 use nephoscope::reference::density::{self, Weather};
 use nephoscope::render::uniforms::scene::{LayerUniforms, SceneUniforms};
 use wgpu::util::DeviceExt as _;
 
 use crate::common::field::{Field, linear_repeat, map_uniforms, run, view_of};
-use crate::common::slab::{PROFILE, THESIS, UNIFORM, noisy_layer};
+use crate::common::slab::{PRODUCT, PROFILE, THESIS, UNIFORM, noisy_layer};
 use crate::common::{Case, Random, bits4, eval, eval_with, gpu};
 
 /// A layer with anything a scene may ask for, and what textures may hold at a place.
@@ -241,7 +241,7 @@ fn field_samples(layer: LayerUniforms, places: &[Vec3]) -> Vec<[f32; 4]> {
         ("linear_repeat", wgpu::BindingResource::Sampler(linear_repeat())),
     ]);
     let key = ProgramKey::plain("test/eval_field.wgsl")
-        .with_flags(["PROFILE", "THESIS", "UNIFORM", "DETAIL", "CURL"])
+        .with_flags(["PROFILE", "THESIS", "UNIFORM", "PRODUCT", "DETAIL", "CURL"])
         .with_constant("DOMAIN", 1);
     run(&key, &bound, [512, u32::try_from(places.len().div_ceil(512)).expect("few"), 1]);
     bytemuck::cast_slice(&readback::buffer(gpu(), &results).expect("it can be read")).to_vec()
@@ -284,5 +284,103 @@ fn no_coverage_is_empty_and_full_coverage_is_full() {
     for [density, _, body, h] in field_samples(noisy_layer(UNIFORM, 1000.0, 3000.0, 1.0), &places) {
         assert_eq!(body, 1.0, "full coverage is a body of 1 everywhere");
         assert!(density == 1.0 || h <= 0.0 || h >= 1.0, "{density} at {h}");
+    }
+}
+
+#[test]
+fn a_stretched_field_is_the_same_field_drawn_out_along_the_wind() {
+    let places = places(33, 20_000);
+    let mut plain = noisy_layer(PROFILE, 1000.0, 3000.0, 0.5);
+    plain.lean = Vec4::ZERO;
+    plain.curl_from_world.w = 0.0;
+    let (along, stretch) = (Vec2::new(0.6, -0.8), 7.0);
+    let stretched = LayerUniforms { combing: along.extend(1.0 - 1.0 / stretch).extend(0.0), ..plain };
+    let drawn_out = |p: &Vec3| {
+        let across = p.xz() + along * (p.xz().dot(along) * (stretch - 1.0));
+        Vec3::new(across.x, p.y, across.y)
+    };
+    let far: Vec<Vec3> = places.iter().map(drawn_out).collect();
+    let pairs = field_samples(plain, &places).into_iter().zip(field_samples(stretched, &far));
+    let gaps: Vec<f32> = pairs.map(|(one, other)| (one[0] - other[0]).abs()).collect();
+    // Places far out are rounded to centimetres, and filters take steps of a 256th of a texel.
+    let off = gaps.iter().filter(|gap| **gap > 0.05).count();
+    assert!(off * 500 < gaps.len(), "{off} of {} places differ", gaps.len());
+    let unmoved = field_samples(stretched, &places).into_iter().zip(field_samples(plain, &places));
+    assert!(unmoved.filter(|(one, other)| (one[0] - other[0]).abs() > 0.05).count() > 1000, "and it is another one");
+}
+
+#[test]
+fn a_form_holds_whatever_the_map_says() {
+    let places = places(34, 20_000);
+    let sheet = LayerUniforms { form: Vec4::new(0.0, 1.0, 0.0, 1.0), ..noisy_layer(PROFILE, 1000.0, 3000.0, 0.9) };
+    let mut cloudy = 0;
+    for (p, [density, bound, ..]) in places.iter().zip(field_samples(sheet, &places)) {
+        assert!(density <= bound + 1e-5, "{p}: {density} over {bound}");
+        assert!(density == 0.0 || p.y < 1600.5, "{p}: a sheet ends at three tenths of its layer");
+        cloudy += usize::from(density > 0.0);
+    }
+    let mixed = field_samples(noisy_layer(PROFILE, 1000.0, 3000.0, 0.9), &places);
+    let high = places.iter().zip(mixed).filter(|(p, sample)| p.y > 1600.5 && sample[0] > 0.0).count();
+    assert!(cloudy > 1000 && high > 1000, "{cloudy} and {high}");
+}
+
+/// A layer of Perlin times Voronoi noise whose cells are 900 m wide.
+fn product_layer(octaves: f32, lacunarity: f32) -> LayerUniforms {
+    let from_world = Vec4::new(0.0, 0.0, 0.0, 1.0 / (8.0 * 900.0));
+    LayerUniforms {
+        perlin_from_world: from_world,
+        perlin_octaves: Vec4::new(octaves, 0.5, lacunarity, 0.3),
+        voronoi_from_world: from_world,
+        voronoi_octaves: Vec4::new(octaves, 0.4, lacunarity, 0.25),
+        product_gain: Vec4::new(4.0, 0.0, 0.0, 0.0),
+        lean: Vec4::ZERO,
+        ..noisy_layer(PRODUCT, 1000.0, 3000.0, 0.6)
+    }
+}
+
+#[test]
+fn perlin_times_voronoi_follows_its_twin() {
+    // Middles of texels, where filtering does nothing.
+    let texel_m = 8.0 * 900.0 / 64.0;
+    let mut random = Random::new(35);
+    let middles = (0..3000).map(|_| {
+        let at = |random: &mut Random, low: f32, high: f32| (random.between(low, high).floor() + 0.5) * texel_m;
+        Vec3::new(at(&mut random, -300.0, 300.0), at(&mut random, 9.0, 26.0), at(&mut random, -300.0, 300.0))
+    });
+    let places: Vec<Vec3> = middles.collect();
+    // A second octave of the same frequency is read at the same places.
+    for octaves in [1.0, 2.0] {
+        let layer = product_layer(octaves, 1.0);
+        let mut cloudy = 0;
+        for (p, [density, bound, body, _]) in places.iter().zip(field_samples(layer, &places)) {
+            let [even, odd] = density::octave(*p * layer.perlin_from_world.w);
+            let sum = |channel: usize, persistence: f32| {
+                if octaves < 2.0 {
+                    even[channel]
+                } else {
+                    (even[channel] + persistence * odd[channel]) / (1.0 + persistence)
+                }
+            };
+            let own = density::product(sum(0, 0.5), sum(1, 0.4), body, &layer);
+            assert!((density - own).abs() < 0.02, "{octaves} octaves at {p}: {density}, by the twin {own}");
+            assert!(density <= bound + 1e-5, "{p}: {density} over {bound}");
+            cloudy += usize::from(density > 0.1);
+        }
+        assert!(cloudy > 100, "{octaves} octaves hold cloud at {cloudy} places only");
+    }
+}
+
+#[test]
+fn octaves_without_weight_change_nothing_and_others_do() {
+    let places = places(36, 5000);
+    let one = field_samples(product_layer(1.0, 2.0), &places);
+    let mut weightless = product_layer(4.0, 2.0);
+    (weightless.perlin_octaves.y, weightless.voronoi_octaves.y) = (0.0, 0.0);
+    assert!(field_samples(weightless, &places) == one, "a persistence of 0 leaves the first octave");
+    let four = field_samples(product_layer(4.0, 2.0), &places);
+    let changed = one.iter().zip(&four).filter(|(one, four)| (one[0] - four[0]).abs() > 0.05).count();
+    assert!(changed > 500, "{changed} places");
+    for (p, [density, bound, ..]) in places.iter().zip(four) {
+        assert!(density <= bound + 1e-5, "{p}: {density} over {bound}");
     }
 }

@@ -222,6 +222,15 @@ fn scenes(effect: Effect) -> Example {
         Effect::Thesis => example(|s| s.all_layers(|layer| layer.model = DensityModel::Thesis), base, &[base], true),
         Effect::Uniform => example(|s| s.all_layers(|layer| layer.model = DensityModel::Uniform), base, &[base], true),
         Effect::Texture => example(texture, base, &[base], true),
+        Effect::Product => example(
+            |s| {
+                s.all_layers(|layer| layer.model = DensityModel::Product);
+                s.scene.weather.coverage = 0.9;
+            },
+            base,
+            &[base],
+            true,
+        ),
         Effect::ShapeNoise => example(base, |s| s.all_layers(|layer| layer.model = DensityModel::Thesis), &[], false),
         Effect::Grid => example(
             |s| {

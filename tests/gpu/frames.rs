@@ -135,7 +135,7 @@ fn random_sky(seed: u32) -> (Scene, Quality) {
     let (domain, models): (DomainKind, &[DensityModel]) = match seed % 4 {
         0 => (DomainKind::Shell, &[DensityModel::Profile, DensityModel::Thesis]),
         1 => (DomainKind::Flat, &[DensityModel::Profile]),
-        2 => (DomainKind::Box, &[DensityModel::Texture, DensityModel::Grid]),
+        2 => (DomainKind::Box, &[DensityModel::Texture, DensityModel::Product, DensityModel::Grid]),
         _ => (DomainKind::Shell, &[DensityModel::Uniform]),
     };
     scene.domain.kind = domain;

@@ -128,8 +128,8 @@ fn one_edit_reaches_few_programs() {
         }
     }
     println!("{} programs, {} with one edit", as_they_are.len(), edited.len());
-    assert!(as_they_are.len() <= 60 && edited.len() > as_they_are.len(), "{} programs", as_they_are.len());
-    assert!(edited.len() <= 400, "{} programs with one edit", edited.len());
+    assert!(as_they_are.len() <= 80 && edited.len() > as_they_are.len(), "{} programs", as_they_are.len());
+    assert!(edited.len() <= 450, "{} programs with one edit", edited.len());
 }
 
 #[test]

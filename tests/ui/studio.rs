@@ -291,7 +291,7 @@ fn the_sundial_turns_the_sun_and_knows_hours_and_cities() {
 #[test]
 fn what_a_crash_left_is_chosen_among_its_copies() {
     let mut editor = Editor::new();
-    let copy = |name: &str| nephoscope::scene::Preset { name: name.to_owned(), ..Default::default() };
+    let copy = |name: &str| Preset { name: name.to_owned(), ..Default::default() };
     let secs = std::time::Duration::from_secs;
     let copies = vec![(copy("Newest"), secs(20)), (copy("Older"), secs(7400)), (copy("Oldest"), secs(200_000))];
     editor.harness.state_mut().offer_recovery(copies);
@@ -455,4 +455,27 @@ fn presets_that_others_put_into_the_folder_are_listed() {
     std::fs::write(folder.join("other.txt"), "").expect("written");
     editor.harness.state_mut().notice_presets();
     assert!(!listed(&editor), "it is gone");
+}
+
+#[test]
+fn a_genus_comes_by_its_name_and_says_what_its_water_does() {
+    let mut editor = Editor::new();
+    let sun = editor.scene().sun.clone();
+    editor.click("genera.section");
+    editor.click("genus.Cirrus");
+    editor.click_label("In place of these clouds");
+    assert!(editor.scene().layers.len() == 1 && editor.scene().layers[0].base_m > 5000.0, "high");
+    assert_eq!(editor.scene().sun, sun, "the light stays");
+    let said = |editor: &Editor, start: &str| {
+        let by = by().predicate(move |node| node.value().or(node.label()).is_some_and(|text| text.starts_with(start)));
+        editor.harness.query_all(by).next().is_some()
+    };
+    assert!(said(&editor, "Layer 1: droplets of 31"), "crystals of 31 µm");
+    editor.click("genus.Cumulus humilis");
+    editor.click_label("Beside these clouds");
+    assert_eq!(editor.scene().layers.len(), 2);
+    assert!(said(&editor, "Layer 2: free path"), "its extinction is given");
+    editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    editor.harness.run();
+    assert_eq!(editor.scene().layers.len(), 1, "one step");
 }

@@ -163,6 +163,7 @@ fn tame(scene: &mut Scene, quality: &mut Quality, own: &mut Stream) {
         (layer.base_m, layer.coverage_offset) = (layer.base_m.min(1500.0), if index == 0 { 0.0 } else { -0.25 });
         layer.top_m = layer.top_m.clamp(layer.base_m + 300.0, layer.base_m + 3000.0);
         layer.density = layer.density.max(0.5);
+        *layer = layer.with_given_optics();
         layer.scattering_per_m = layer.scattering_per_m.max(0.01);
         layer.map_scale = layer.map_scale.clamp(0.3, 1.0);
         if index == 0 {

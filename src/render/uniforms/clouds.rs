@@ -5,7 +5,9 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 use super::camera::Eye;
 use super::scene::{LayerUniforms, SceneUniforms};
 use crate::plan::{KeyLight, Lighting};
-use crate::scene::{Camera, CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scene, Wind};
+use crate::scene::{
+    BodyForm, Camera, CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scene, Wind,
+};
 
 /// Velocity of the wind: east in x, south in y.
 pub(crate) fn wind_mps(wind: &Wind) -> DVec2 {
@@ -28,7 +30,8 @@ fn map_from_world(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
         DVec2::ZERO
     };
     let shift = DVec2::new(layer.map_east_m.into(), layer.map_south_m.into());
-    let tiles = (DVec2::new(eye.position.x, eye.position.z) - drift - shift) / size_m;
+    let here = DVec2::new(eye.position.x, eye.position.z) - drift - shift;
+    let tiles = combed(&scene.wind, layer, here) / size_m;
     let per_metre = (1.0 / size_m) as f32;
     match weather.edge {
         MapEdge::Repeat => Vec4::new(wrapped(tiles.x), wrapped(tiles.y), per_metre, 0.0),
@@ -37,9 +40,16 @@ fn map_from_world(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
     }
 }
 
-fn noise_from_world(size_m: f32, eye: &Eye, drift_m: DVec3) -> Vec4 {
+/// What is drawn out along the wind, pressed together again: twin of `combed` in `pass/cloud_field.wgsl`.
+fn combed(wind: &Wind, layer: &CloudLayer, place_m: DVec2) -> DVec2 {
+    let along = wind_mps(&Wind { speed_mps: 1.0, ..wind.clone() });
+    place_m - along * (place_m.dot(along) * (1.0 - 1.0 / f64::from(layer.stretch)))
+}
+
+/// `place_m` is that of the eye in the noise, with the wind and what it has drawn out taken away.
+fn noise_from_world(size_m: f32, place_m: DVec3) -> Vec4 {
     let size_m = f64::from(size_m);
-    let tiles = (DVec3::new(eye.position.x, 0.0, eye.position.z) - drift_m) / size_m;
+    let tiles = place_m / size_m;
     Vec4::new(wrapped(tiles.x), wrapped(tiles.y), wrapped(tiles.z), (1.0 / size_m) as f32)
 }
 
@@ -53,12 +63,17 @@ fn body(layer: &CloudLayer, coverage: f32) -> (f32, f32) {
     match layer.model {
         DensityModel::Thesis | DensityModel::Texture if coverage > 0.0 => (1.0 / coverage, 1.0 - 1.0 / coverage),
         DensityModel::Thesis | DensityModel::Texture | DensityModel::Grid => (0.0, 0.0),
-        DensityModel::Profile | DensityModel::Uniform => {
+        DensityModel::Profile | DensityModel::Uniform | DensityModel::Product => {
             let softness = layer.edge_softness;
             (1.0 / softness, -(1.0 - coverage * (1.0 + softness)) / softness)
         }
     }
 }
+
+/// Cells across a tile of the octaves' noise: `CELLS` in `pass/bake_octave.wgsl`.
+const OCTAVE_CELLS: f32 = 8.0;
+/// The fixed factor of Thomann's listing 15.
+const PRODUCT_BOOST: f32 = 2.0;
 
 /// As far as nothing lies.
 const BEYOND_ALL_M: f32 = 1e7;
@@ -76,27 +91,86 @@ fn bound_reach_m(scene: &Scene, layer: &CloudLayer, thickness_m: f32) -> f32 {
     0.9 * cell_m / (1.0 + 2.0 * layer.lean_m / thickness_m)
 }
 
+/// Number, persistence, lacunarity and threshold of the sums of Perlin and of Voronoi noise.
+fn sums(layer: &CloudLayer) -> [Vec4; 2] {
+    let (perlin, voronoi) = (&layer.perlin, &layer.voronoi);
+    [
+        Vec4::new(perlin.octaves as f32, perlin.persistence, perlin.lacunarity as f32, perlin.threshold),
+        Vec4::new(voronoi.octaves as f32, voronoi.persistence, voronoi.lacunarity as f32, voronoi.threshold),
+    ]
+}
+
+/// As `cloud_field.wgsl` numbers the models.
+fn model_index(model: DensityModel) -> u32 {
+    match model {
+        DensityModel::Profile => 0,
+        DensityModel::Thesis => 1,
+        DensityModel::Uniform => 2,
+        DensityModel::Texture => 3,
+        DensityModel::Grid => 4,
+        DensityModel::Product => 5,
+    }
+}
+
+/// As `cloud/phase.wgsl` numbers the phase functions.
+fn phase_index(kind: PhaseKind) -> u32 {
+    match kind {
+        PhaseKind::Isotropic => 0,
+        PhaseKind::HenyeyGreenstein => 1,
+        PhaseKind::TwoLobe => 2,
+        PhaseKind::CornetteShanks => 3,
+        PhaseKind::Schlick => 4,
+        PhaseKind::Rayleigh => 5,
+    }
+}
+
+/// See [`LayerUniforms::combing`].
+fn combing(scene: &Scene, layer: &CloudLayer) -> Vec4 {
+    let along = wind_mps(&Wind { speed_mps: 1.0, ..scene.wind.clone() }).as_vec2();
+    along.extend(1.0 - 1.0 / layer.stretch).extend(0.0)
+}
+
 fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) -> LayerUniforms {
     let wind = wind_mps(&scene.wind) * f64::from(layer.wind_scale);
-    let drift = |speed: f32, rise: f32| {
-        let moved = wind * f64::from(speed) * time_secs;
-        DVec3::new(moved.x, f64::from(rise) * time_secs, moved.y)
+    let place = |speed: f32, rise: f32, is_combed: bool| {
+        let here = DVec2::new(eye.position.x, eye.position.z) - wind * f64::from(speed) * time_secs;
+        let here = if is_combed { combed(&scene.wind, layer, here) } else { here };
+        DVec3::new(here.x, -f64::from(rise) * time_secs, here.y)
     };
     let thickness_m = (layer.top_m - layer.base_m).max(1.0);
     let downwind = wind_mps(&scene.wind).normalize_or_zero() * f64::from(layer.lean_m);
     let (body_scale, body_bias) = body(layer, scene.weather.coverage);
     let (body_scale_beyond, body_bias_beyond) = body(layer, scene.weather.coverage_change_to);
-    let curl = noise_from_world(layer.curl_size_m, eye, drift(scene.wind.detail_speed, 0.0));
+    let octaves = sums(layer);
+    let octave = |size_m: f32, shift_m: f32| {
+        let shift = DVec3::new(0.61, 0.37, 0.70) * f64::from(shift_m);
+        noise_from_world(OCTAVE_CELLS * size_m, place(scene.wind.shape_speed, scene.wind.rise_mps, true) - shift)
+    };
+    let curl = noise_from_world(layer.curl_size_m, place(scene.wind.detail_speed, 0.0, false));
     LayerUniforms {
         map_from_world: map_from_world(scene, layer, eye, time_secs),
-        shape_from_world: noise_from_world(layer.shape_size_m, eye, drift(scene.wind.shape_speed, scene.wind.rise_mps)),
+        shape_from_world: noise_from_world(
+            layer.shape_size_m,
+            place(scene.wind.shape_speed, scene.wind.rise_mps, true),
+        ),
         detail_from_world: noise_from_world(
             layer.detail_size_m,
-            eye,
-            drift(scene.wind.detail_speed, scene.wind.rise_mps),
+            place(scene.wind.detail_speed, scene.wind.rise_mps, true),
         ),
         curl_from_world: Vec4::new(curl.x, curl.z, curl.w, layer.curl_m / layer.detail_size_m),
         lean: Vec4::new(downwind.x as f32, downwind.y as f32, bound_reach_m(scene, layer, thickness_m), 0.0),
+        combing: combing(scene, layer),
+        perlin_from_world: octave(layer.perlin.size_m, layer.perlin.shift_m),
+        voronoi_from_world: octave(layer.voronoi.size_m, layer.voronoi.shift_m),
+        perlin_octaves: octaves[0],
+        voronoi_octaves: octaves[1],
+        product_gain: Vec4::new(PRODUCT_BOOST * layer.perlin.multiplier * layer.voronoi.multiplier, 0.0, 0.0, 0.0),
+        form: match layer.form {
+            BodyForm::Map => Vec4::ZERO,
+            BodyForm::Cumulus => Vec4::new(1.0, 0.0, 0.0, 1.0),
+            BodyForm::Stratus => Vec4::new(0.0, 1.0, 0.0, 1.0),
+            BodyForm::Stratocumulus => Vec4::new(0.0, 0.0, 1.0, 1.0),
+        },
         base_m: layer.base_m,
         per_thickness: 1.0 / thickness_m,
         base_ramp: (200.0 / thickness_m).clamp(0.02, 0.3),
@@ -111,25 +185,12 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
         sharpness: layer.sharpness,
         density_scale: layer.density,
         extinction_per_m: layer.extinction_per_m(),
-        albedo: layer.scattering_per_m / layer.extinction_per_m(),
+        albedo: layer.scattering() / layer.extinction_per_m(),
         shadow_extinction_scale: layer.shadow_extinction_scale,
         sun_gain: layer.phase_gain * layer.brightness,
         ambient_gain: layer.brightness,
-        model: match layer.model {
-            DensityModel::Profile => 0,
-            DensityModel::Thesis => 1,
-            DensityModel::Uniform => 2,
-            DensityModel::Texture => 3,
-            DensityModel::Grid => 4,
-        },
-        phase_kind: match layer.phase.effective_kind() {
-            PhaseKind::Isotropic => 0,
-            PhaseKind::HenyeyGreenstein => 1,
-            PhaseKind::TwoLobe => 2,
-            PhaseKind::CornetteShanks => 3,
-            PhaseKind::Schlick => 4,
-            PhaseKind::Rayleigh => 5,
-        },
+        model: model_index(layer.model),
+        phase_kind: phase_index(layer.phase.effective_kind()),
         g: layer.phase.g,
         back_g: layer.phase.back_g,
         back_mix: layer.phase.back_mix,

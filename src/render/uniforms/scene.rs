@@ -95,6 +95,20 @@ gpu_struct! {
         /// Displacement of the tops, downwind, in metres: east in x, south in y. In z how far from a place the bound of its
         /// cell of the map holds.
         pub lean: Vec4,
+        /// Direction of the wind, east in x and south in y, and in z 1 - 1/stretch: what is taken from places along it.
+        pub combing: Vec4,
+        /// Shares of cumulus, stratus and stratocumulus, and 1 in w if they replace the map's.
+        pub form: Vec4,
+        /// Tile coordinates of the octaves of Perlin noise, as of the large noise.
+        pub perlin_from_world: Vec4,
+        /// Their number, persistence and lacunarity, and the threshold in w.
+        pub perlin_octaves: Vec4,
+        /// The same of Voronoi noise.
+        pub voronoi_from_world: Vec4,
+        /// The same of Voronoi noise.
+        pub voronoi_octaves: Vec4,
+        /// In x the factor of both noises' product.
+        pub product_gain: Vec4,
         /// Height of the base.
         pub base_m: f32,
         /// 1 over the thickness.
