@@ -571,3 +571,29 @@ fn clouds_alone_have_associated_or_straight_alpha() {
     assert!(thin > 10, "only {thin} pixels tell the two apart");
     refuses(&folder, &render("fair_weather", "a.exr", &["--straight"]), 2, &["--clouds-only"]);
 }
+
+#[test]
+fn skies_are_compared_with_photographs() {
+    let folder = folder();
+    let args = ["pano", "clear_puffs", "-o", "own.exr", "--size", "64x32", "--quality", "draft"];
+    renders(&folder, &args);
+    let compare = |reference: &str, more: &[&str]| {
+        let mut args = vec!["compare-sky", "--reference", reference, "--quality", "draft", "--json"];
+        args.extend(more);
+        let out = stdout(&renders(&folder, &args));
+        let line: serde_json::Value = serde_json::from_str(out.trim()).expect("a line of JSON");
+        ["luminance", "red", "blue", "structures"].map(|figure| line[figure].as_f64().expect("a number"))
+    };
+    let own = compare("own.exr", &["clear_puffs"]);
+    assert!(own.iter().all(|distance| *distance < 0.03), "a sky is like its own picture, within half floats: {own:?}");
+    let other = compare("own.exr", &["stratus"]);
+    assert!(other[0] > 0.2 && other[2] > 0.2, "an overcast is not: {other:?}");
+    renders(&folder, &render("clear_puffs", "shown.png", &[]));
+    let shown = compare("shown.png", &["clear_puffs", "--set", "camera.height_m=100"]);
+    assert!(shown.iter().all(|distance| *distance < 0.2), "what the screen shows: {shown:?}");
+    refuses(&folder, &["compare-sky", "--reference", "none.exr", "fair_weather"], 4, &["none.exr"]);
+    std::fs::write(folder.path().join("text.png"), "no picture").expect("written");
+    refuses(&folder, &["compare-sky", "--reference", "text.png", "fair_weather"], 4, &["text.png"]);
+    renders(&folder, &["render", "clear_puffs", "-o", "tiny.png", "--size", "12x12", "--quality", "draft"]);
+    refuses(&folder, &["compare-sky", "--reference", "tiny.png", "fair_weather"], 2, &["too small"]);
+}

@@ -7,6 +7,7 @@ use super::interrupt::Interrupted;
 use crate::export::ExportError;
 use crate::files::FileError;
 use crate::gpu::GpuError;
+use crate::images::ImageError;
 use crate::images::pattern::PatternError;
 use crate::render::RenderError;
 use crate::scene::PresetError;
@@ -48,6 +49,7 @@ fn code_of(cause: &(dyn std::error::Error + 'static)) -> Option<u8> {
     let is_file = cause.is::<FileError>()
         || cause.is::<ExportError>()
         || cause.is::<PresetError>()
+        || cause.is::<ImageError>()
         || cause.is::<std::io::Error>();
     is_file.then_some(FILE)
 }

@@ -16,8 +16,10 @@ use crate::scene::param::Choice as _;
 use crate::scene::{Frame, Output, Quality};
 
 #[derive(Debug, Args)]
-#[command(after_help = "Parts: weather-map, shape-noise, worley-noise, detail-noise, curl-noise, relief, clear-ways, \
-    sky-transmittance, sky-multiscatter, sky-view. A volume becomes a sheet with its slices below each other.")]
+#[command(
+    after_help = "Parts: weather-map, shape-noise, worley-noise, octave-noise, detail-noise, curl-noise, relief, clear-ways, \
+    sky-transmittance, sky-multiscatter, sky-view. A volume becomes a sheet with its slices below each other."
+)]
 pub(super) struct ExportArgs {
     /// A preset (.ron), an exported .exr or .png, a voxel grid (.json), or the name of a built-in sky.
     scene: PathBuf,

@@ -6,6 +6,7 @@
 mod accuracy;
 mod args;
 mod bench;
+mod compare_sky;
 mod editor;
 mod error;
 mod export;
@@ -65,6 +66,8 @@ enum Command {
     Bench(Box<bench::BenchArgs>),
     /// Measures how far pictures are from the truth, and what that costs.
     Accuracy(Box<accuracy::AccuracyArgs>),
+    /// Measures how like a photograph skies are: light, colours, and the sizes of structures.
+    CompareSky(compare_sky::CompareSkyArgs),
     /// Bakes clouds into voxels that other renderers read.
     Grid(grid::GridArgs),
     /// Checks that pictures on this machine keep what the program promises.
@@ -108,6 +111,7 @@ pub fn run(cli: Cli) -> Result<()> {
         Some(Command::Info(args)) => info::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::Accuracy(args)) => accuracy::run(&args),
+        Some(Command::CompareSky(args)) => compare_sky::run(&args),
         Some(Command::Grid(args)) => grid::run(&args),
         Some(Command::Verify(args)) => verify::run(&args),
     }

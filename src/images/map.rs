@@ -81,6 +81,43 @@ pub fn read_exr(path: &Path) -> Result<FloatImage, ImageError> {
     Ok(image)
 }
 
+/// First bytes of a Radiance file.
+const HDR_MAGIC: &[u8] = b"#?";
+
+/// Reads any picture: EXR and Radiance hold linear light, PNG what a screen shows, which is decoded from sRGB. Returns whether it was
+/// made for a screen, too.
+///
+/// # Errors
+/// As [`read_exr`].
+pub fn read_picture(path: &Path) -> Result<(FloatImage, bool), ImageError> {
+    let bytes = read_limited(path)?;
+    if bytes.starts_with(EXR_MAGIC) {
+        return Ok((read_exr(path)?, false));
+    }
+    let is_shown = bytes.starts_with(PNG_MAGIC);
+    let (width, height, mut rgba) = if is_shown {
+        decode_png(path, &bytes, |_, _| Ok(()))?
+    } else if bytes.starts_with(HDR_MAGIC) {
+        let decoded = image::load_from_memory_with_format(&bytes, image::ImageFormat::Hdr);
+        let decoded =
+            decoded.map_err(|error| ImageError::Corrupt { path: path.to_owned(), reason: error.to_string() })?;
+        let (width, height) = (decoded.width(), decoded.height());
+        (width, height, decoded.into_rgba32f().into_raw().as_chunks().0.to_vec())
+    } else {
+        return Err(ImageError::WrongFormat { path: path.to_owned() });
+    };
+    check_finite(path, width, &rgba, None)?;
+    if is_shown {
+        rgba.iter_mut().flat_map(|pixel| &mut pixel[..3]).for_each(|channel| *channel = srgb_decoded(*channel));
+    }
+    Ok((FloatImage { width, height, rgba, depth: None, crop: None }, is_shown))
+}
+
+/// Linear light of an sRGB value, 0 to 1 (IEC 61966-2-1).
+pub fn srgb_decoded(value: f32) -> f32 {
+    if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
+}
+
 fn read_limited(path: &Path) -> Result<Vec<u8>, ImageError> {
     let reading = |error| ImageError::reading(path, error);
     let bytes = fs::metadata(path).map_err(reading)?.len();

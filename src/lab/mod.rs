@@ -12,6 +12,7 @@ pub mod flip;
 pub mod metrics;
 pub mod pareto;
 pub mod plot;
+pub mod realism;
 pub mod suite;
 pub mod sweep;
 pub mod table;
