@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Renders every built-in sky at 960x540 with the program as a user calls it, and makes docs/gallery.png of them, in the
+# Renders every built-in sky at 480x270 with the program as a user calls it, and makes docs/gallery.png of them, in the
 # order of `nephoscope presets list`, row by row, and the small pictures that the editor shows of them. Argument: a folder in which to keep the single pictures.
 set -euo pipefail
 folder=${1:+$(realpath -m "$1")}
@@ -14,7 +14,7 @@ mkdir -p "$folder"
 
 pictures=()
 while read -r name; do
-    "$program" render "$name" -o "$folder/$name.png" --size 960x540
+    "$program" render "$name" -o "$folder/$name.png" --size 480x270
     pictures+=("$folder/$name.png")
     "$program" render "$name" -o "thumbnails/$name.png" --size 224x126 --quality preview
 done < <("$program" presets list | sed 's/ .*//')

@@ -148,6 +148,48 @@ mod tests {
         assert_eq!(Genus::Cirrus.join(&mut full), Err(TooManyLayers));
     }
 
+    /// The genera with their water, as `docs/genera.md` has them.
+    fn page() -> String {
+        let mut page = "# Genera\n\n\
+            The clouds of each genus in the built-in sky that shows it: its first layer, and what follows from its water. Droplets are\n\
+            crystals where it is ice. Optical depth is that of the whole thickness at full density, the most there can be; real columns\n\
+            have less. `--set genus=NAME` gives a sky these clouds, `--set genus=+NAME` adds them.\n\n\
+            This page is written by a test of `scene::genus`; do not edit it.\n\n\
+            | genus | sky | base, m | top, m | water, g/m³ | droplets, 1/cm³ | effective radius, µm | free path, m | optical depth |\n\
+            |---|---|---|---|---|---|---|---|---|\n"
+            .to_owned();
+        for genus in Genus::ALL {
+            let sky = genus.sky().expect("it has one");
+            let layer = &sky.layers[0];
+            let Derived { effective_radius_um, extinction_per_m, optical_depth } = Derived::of(layer);
+            page.push_str(&format!(
+                "| {} | `{}` | {} | {} | {} | {} | {:.1} | {:.0} | {optical_depth:.1} |\n",
+                genus.title(),
+                genus.recipe().0,
+                layer.base_m,
+                layer.top_m,
+                layer.water_g_per_m3,
+                layer.droplets_per_cm3,
+                effective_radius_um.unwrap_or_else(|| panic!("{genus:?} is not given by its water")),
+                1.0 / extinction_per_m,
+            ));
+        }
+        page
+    }
+
+    #[test]
+    fn the_page_of_genera_is_the_one_that_their_skies_give() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/genera.md");
+        if std::env::var_os("NEPHOSCOPE_UPDATE").is_some() {
+            std::fs::write(path, page()).expect("docs/genera.md can be written");
+        }
+        let stored = std::fs::read_to_string(path).unwrap_or_default();
+        assert!(
+            stored == page(),
+            "docs/genera.md differs from the presets; run `NEPHOSCOPE_UPDATE=1 cargo test --lib genus`"
+        );
+    }
+
     #[test]
     fn droplets_make_the_extinction_of_the_literature() {
         // Water in g/m³, droplets in a cm³, effective radius in µm, extinction in 1/m: Stephens 1978 with k = 0.8.

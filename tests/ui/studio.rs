@@ -470,7 +470,7 @@ fn a_genus_comes_by_its_name_and_says_what_its_water_does() {
         let by = by().predicate(move |node| node.value().or(node.label()).is_some_and(|text| text.starts_with(start)));
         editor.harness.query_all(by).next().is_some()
     };
-    assert!(said(&editor, "Layer 1: droplets of 31"), "crystals of 31 µm");
+    assert!(said(&editor, "Layer 1: droplets of 24"), "crystals of 24 µm");
     editor.click("genus.Cumulus humilis");
     editor.click_label("Beside these clouds");
     assert_eq!(editor.scene().layers.len(), 2);
