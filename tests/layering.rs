@@ -16,10 +16,23 @@ const LAYERS: [(&str, &[&str]); 13] = [
     ("reference", &["render"]),
     ("export", &["images"]),
     ("files", &["scene", "export", "images", "plan", "render", "gpu"]),
-    ("lab", &["scene", "plan", "render", "gpu", "reference"]),
+    ("lab", &["scene", "plan", "render", "gpu", "reference", "images"]),
     // The plan, the timings, the light and the lab's results are read, never made; of the editor, what it shows and what it is
     // told.
-    ("ui", &["scene", "plan", "gpu", "lab", "render::meter", "app::action", "app::document", "app::preferences"]),
+    (
+        "ui",
+        &[
+            "scene",
+            "plan",
+            "gpu",
+            "lab",
+            "render::meter",
+            "render::probe",
+            "app::action",
+            "app::document",
+            "app::preferences",
+        ],
+    ),
     ("cli", &["app", "export", "files", "gpu", "images", "lab", "plan", "render", "scene", "shader", "ui"]),
     ("app", &["export", "files", "gpu", "images", "lab", "plan", "render", "scene", "shader", "ui"]),
 ];

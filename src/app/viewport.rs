@@ -181,6 +181,14 @@ impl Viewport {
         let scale = picture.image.candela_per_unit;
         let light = picture.image.rgba.first().map_or([0.0; 3], |[r, g, b, _]| [r * scale, g * scale, b * scale]);
         let distance_m = picture.image.distance_m.first().copied().filter(|distance| *distance > 0.0);
+        let mut probe = None;
+        if let Some(far) = distance_m {
+            let place = [far * towards.x, eye[1] + far * towards.y, far * towards.z];
+            probe = self.renderer.probe(&point, place)?;
+            if probe.is_none() {
+                return Ok(None);
+            }
+        }
         Ok(Some(Picked {
             at,
             direction_deg: [
@@ -191,6 +199,7 @@ impl Viewport {
             display: None,
             transmittance: picture.clouds.first().map_or(1.0, |cloud| cloud[3]),
             distance_m,
+            probe,
             position_m: distance_m.map(|far| {
                 let [east, up, south] = std::array::from_fn(|axis| eye[axis] + far * towards[axis]);
                 [east, altitude(&scene, up, far * towards.x.hypot(towards.z)), south]

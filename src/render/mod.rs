@@ -14,6 +14,7 @@ pub mod meter;
 mod output;
 pub mod pass;
 mod passes;
+pub mod probe;
 mod samples;
 mod schedule;
 pub mod shaders;

@@ -61,6 +61,7 @@ files! {
     "pass/meter.wgsl",
     "pass/path_state.wgsl",
     "pass/path_trace.wgsl",
+    "pass/probe.wgsl",
     "pass/shafts_blur.wgsl",
     "pass/shafts_mask.wgsl",
     "pass/sky_aerial.wgsl",

@@ -3,6 +3,7 @@
 use egui::{Align2, Color32, Context, Grid, Id, Pos2, Rect, Stroke};
 
 use super::row::number;
+use crate::render::probe::Probe;
 
 /// What was found at a point.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +20,8 @@ pub struct Picked {
     pub transmittance: f32,
     /// Metres to the cloud, weighted by what it adds; `None` where there is none.
     pub distance_m: Option<f32>,
+    /// The clouds there; `None` where there are none.
+    pub probe: Option<Probe>,
     /// That place: metres to the east, up, and to the south.
     pub position_m: Option<[f32; 3]>,
 }
@@ -95,6 +98,13 @@ fn lines(picked: &Picked) -> Vec<(&'static str, String)> {
             };
             let place = [side(east, ["east", "west"]), side(south, ["south", "north"])];
             lines.push(("Place", place.join(", ")));
+            if let Some(Probe { densities, extinction_per_m }) = picked.probe {
+                let shown = densities.iter().enumerate().filter(|(_, density)| **density > 0.0);
+                let shown: Vec<String> =
+                    shown.map(|(layer, density)| format!("{density:.3} (layer {})", layer + 1)).collect();
+                lines.push(("Density", if shown.is_empty() { "0".to_owned() } else { shown.join(", ") }));
+                lines.push(("Extinction", format!("{} /m", exact(extinction_per_m))));
+            }
         }
         _ => lines.push(("Distance", "no cloud".to_owned())),
     }
@@ -114,11 +124,15 @@ mod tests {
             display: None,
             transmittance: 1.0,
             distance_m: None,
+            probe: None,
             position_m: None,
         };
         let texts = lines(&clear);
         assert!(texts.contains(&("Distance", "no cloud".to_owned())), "{texts:?}");
         assert!(!texts.iter().any(|(name, _)| *name == "Exposure value"), "black has none: {texts:?}");
+        let probe = Some(Probe { densities: [0.0, 0.25, 0.0, 0.0], extinction_per_m: 0.02 });
+        let cloud = Picked { distance_m: Some(900.0), position_m: Some([0.0; 3]), probe, ..clear.clone() };
+        assert!(lines(&cloud).contains(&("Density", "0.250 (layer 2)".to_owned())), "{:?}", lines(&cloud));
         let grey = Picked { light: [4000.0; 3], ..clear };
         assert!(lines(&grey).contains(&("Exposure value", "14.97 EV".to_owned())), "{:?}", lines(&grey));
     }

@@ -129,3 +129,38 @@ fn the_film_curve_is_the_published_fit_and_stripes_lie_over_what_clips_alone() {
         assert!(exposure_ev > 8.0 || clipped > 100, "something clips: {clipped}");
     }
 }
+
+#[test]
+fn a_probe_finds_the_clouds_at_a_place() {
+    use nephoscope::scene::{CloudLayer, DensityModel, Scene};
+    let layer = |base_m: f32, top_m: f32, scattering_per_m: f32| CloudLayer {
+        model: DensityModel::Uniform,
+        base_m,
+        top_m,
+        scattering_per_m,
+        density: 0.5,
+        ..CloudLayer::default()
+    };
+    let mut scene =
+        Scene { layers: vec![layer(1000.0, 2000.0, 0.02), layer(1500.0, 3000.0, 0.04)], ..Scene::default() };
+    scene.weather.coverage = 1.0;
+    let quality = quick();
+    let mut renderer = renderer();
+    let frame = frame(&scene, &quality, [1, 1], Output::Linear);
+    let mut at = |place: [f32; 3]| {
+        std::iter::from_fn(|| Some(renderer.probe(&frame, place).expect("it can look")))
+            .flatten()
+            .next()
+            .expect("compiled")
+    };
+    for (height_m, densities, extinction) in
+        [(900.0, [0.0, 0.0], 0.0), (1200.0, [0.5, 0.0], 0.01), (1700.0, [0.5, 0.5], 0.03), (2500.0, [0.0, 0.5], 0.02)]
+    {
+        let seen = at([300.0, height_m, -700.0]);
+        assert_eq!(seen.densities, [densities[0], densities[1], 0.0, 0.0], "at {height_m} m");
+        assert!((seen.extinction_per_m - extinction).abs() < 1e-6, "at {height_m} m: {}", seen.extinction_per_m);
+    }
+    let empty = Scene { layers: Vec::new(), ..Scene::default() };
+    let nothing = renderer.probe(&Frame { scene: &empty, ..frame }, [0.0, 1500.0, 0.0]).expect("it can look");
+    assert_eq!(nothing.expect("nothing is compiled").densities, [0.0; 4]);
+}

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nephoscope::gpu::ProgramKey;
 use nephoscope::plan::FramePlan;
-use nephoscope::render::{meter, programs, shaders::TABLE, truth, watch};
+use nephoscope::render::{meter, probe, programs, shaders::TABLE, truth, watch};
 use nephoscope::scene::builtin::BUILTINS;
 use nephoscope::scene::edit;
 use nephoscope::scene::random::randomise;
@@ -76,6 +76,7 @@ fn reachable() -> BTreeMap<String, ProgramKey> {
             let plan = FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output, window: None });
             keys.extend(programs(&plan));
             keys.extend(meter::programs(&plan));
+            keys.extend(probe::programs(&plan));
             keys.extend(truth::programs(&plan));
             keys.extend(programs(&FramePlan { tracks: true, ..plan }));
         }
