@@ -19,12 +19,24 @@ while read -r name; do
     "$program" render "$name" -o "thumbnails/$name.png" --size 224x126 --quality preview
 done < <("$program" presets list | sed 's/ .*//')
 
-# PNG keeps every grain, so the sheet is as large as 1 MB allows.
-for width in 480 420 360 320 280; do
-    "${CARGO_TARGET_DIR:-target}/debug/examples/contact_sheet" 3 "$width" "$folder/sheet.png" "${pictures[@]}"
-    if (($(wc -c <"$folder/sheet.png") <= 1000000)); then
-        mv "$folder/sheet.png" docs/gallery.png
-        exit
-    fi
-done
-fail "no size of the sheet stays below 1 MB"
+# sheet FILE COLUMNS PICTURES...: PNG keeps every grain, so the sheet is as large as 1 MB allows.
+sheet() {
+    local file=$1 columns=$2 width
+    shift 2
+    for width in 480 420 360 320 300 280 260 240 220 200; do
+        "${CARGO_TARGET_DIR:-target}/debug/examples/contact_sheet" "$columns" "$width" "$folder/sheet.png" "$@"
+        if (($(wc -c <"$folder/sheet.png") <= 1000000)); then
+            mv "$folder/sheet.png" "$file"
+            return
+        fi
+    done
+    fail "no size of $file stays below 1 MB"
+}
+sheet docs/gallery.png 5 "${pictures[@]}"
+# The genera in the order of docs/genera.md, and Thomann's scenes.
+genera=()
+while read -r name; do
+    genera+=("$folder/$name.png")
+done < <(sed -n 's/^| [A-Z][a-z ]* | `\([a-z_]*\)` .*/\1/p' docs/genera.md)
+sheet docs/genera.png 4 "${genera[@]}"
+sheet docs/box.png 4 "$folder"/box_*.png
