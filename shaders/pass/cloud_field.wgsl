@@ -314,6 +314,10 @@ fn texture_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
 #if PRODUCT
 // Texels of the octaves' noise that are as wide as the step at which noises are read at their finest level, in tiles.
 const FINEST_OCTAVE: f32 = 1200.0;
+// Octaves of coarser levels than this are their mean: cells are smaller than what a step sees.
+const COARSEST_OCTAVE: f32 = 4.0;
+// Means of the noises in pass/bake_octave.wgsl.
+const MEAN_OCTAVES: vec2f = vec2f(0.5, 0.45);
 
 // A sum of octaves, 0..1: of Perlin noise in channels 0 and 2, of Voronoi noise in 1 and 3, which take turns.
 fn octaves_at(q: vec3f, from_world: vec4f, octaves: vec4f, channel: u32, level: f32) -> f32 {
@@ -323,10 +327,14 @@ fn octaves_at(q: vec3f, from_world: vec4f, octaves: vec4f, channel: u32, level: 
   var frequency = 1.0;
   let place = q * from_world.w + from_world.xyz;
   for (var i = 0u; i < u32(octaves.x); i++) {
-    count_read();
     let own = max(level + log2(FINEST_OCTAVE * from_world.w * frequency), 0.0);
-    let noise = textureSampleLevel(octave_noise, linear_repeat, place * frequency, own);
-    sum += amplitude * noise[channel + 2u * (i % 2u)];
+    if (own > COARSEST_OCTAVE) {
+      sum += amplitude * MEAN_OCTAVES[channel];
+    } else {
+      count_read();
+      let noise = textureSampleLevel(octave_noise, linear_repeat, place * frequency, own);
+      sum += amplitude * noise[channel + 2u * (i % 2u)];
+    }
     weight += amplitude;
     amplitude *= octaves.y;
     frequency *= octaves.z;

@@ -287,6 +287,9 @@ struct Job {
 impl Job {
     fn new(args: &RenderArgs) -> Result<Self> {
         let content = args.content()?;
+        if args.brightest.is_some() && matches!(content, Content::Display | Content::Display16) {
+            return Err(Usage("--brightest is for .exr and .hdr; a PNG has the screen's range".to_owned()).into());
+        }
         let sky = files::open(&args.scene)?;
         let mut quality = args::quality(args.quality.as_deref(), &sky)?;
         // A still has no frames before it to take pixels from.

@@ -96,7 +96,12 @@ pub fn read_picture(path: &Path) -> Result<(FloatImage, bool), ImageError> {
     }
     let is_shown = bytes.starts_with(PNG_MAGIC);
     let (width, height, mut rgba) = if is_shown {
-        decode_png(path, &bytes, |_, _| Ok(()))?
+        decode_png(path, &bytes, |width, height| {
+            if u64::from(width) * u64::from(height) <= MAX_EXR_PIXELS {
+                return Ok(());
+            }
+            Err(ImageError::TooLarge { path: path.to_owned(), width, height, limit: 16_384 })
+        })?
     } else if bytes.starts_with(HDR_MAGIC) {
         let decoded = image::load_from_memory_with_format(&bytes, image::ImageFormat::Hdr);
         let decoded =

@@ -60,7 +60,7 @@ pub enum ImageError {
         height: u32,
     },
     /// A map is larger than the renderer takes.
-    #[error("{path} is {width} x {height} pixels; a map may be at most {limit} x {limit}, make it smaller")]
+    #[error("{path} is {width} x {height} pixels; it may be at most {limit} x {limit}, make it smaller")]
     TooLarge {
         /// The map.
         path: PathBuf,

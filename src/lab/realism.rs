@@ -53,10 +53,8 @@ pub struct Realism {
     /// Blue over green, in stops.
     pub blue: Spread,
     /// Contrast of structures by their size, the finest first: root mean square difference in stops between a pixel and the mean
-    /// of the four that it belongs to, then of those means, and so on. The finest are `finest_share` of the picture's width.
+    /// of the four that it belongs to, then of those means, and so on.
     pub structures: Vec<f64>,
-    /// Size of a pixel as a share of the width.
-    pub finest_share: f64,
 }
 
 /// How far two pictures are from each other.
@@ -91,7 +89,6 @@ impl Realism {
             luminance: Spread::of(seen),
             red: Spread::of(ratios.iter().map(|ratio| ratio[0]).collect()),
             blue: Spread::of(ratios.iter().map(|ratio| ratio[1]).collect()),
-            finest_share: 1.0 / image.width.max(1) as f64,
         }
     }
 
@@ -165,7 +162,7 @@ mod tests {
 
     /// Stripes, `period` pixels long.
     fn stripes(period: u32) -> FloatImage {
-        let light = |x: u32| if x / (period / 2) % 2 == 0 { 0.2_f32 } else { 0.8 };
+        let light = |x: u32| if (x / (period / 2)).is_multiple_of(2) { 0.2_f32 } else { 0.8 };
         let row = (0..64).map(|x| [light(x), light(x), light(x), 1.0]);
         FloatImage { width: 64, height: 64, rgba: (0..64).flat_map(|_| row.clone()).collect(), depth: None, crop: None }
     }

@@ -202,7 +202,13 @@ impl Preset {
     /// As [`edit::apply`].
     pub fn set_all(&mut self, assignments: &[String], quality: &mut Quality) -> Result<(), EditError> {
         edit::apply(assignments, &mut self.scene, quality)?;
-        self.animation.override_by(assignments.iter().filter_map(|set| Some(edit::split(set).ok()?.0)));
+        // A genus brings layers and weather of its own, unless it joins those that are there.
+        let changed = assignments.iter().filter_map(|set| edit::split(set).ok()).flat_map(|(key, value)| match key {
+            "genus" if value.starts_with('+') => Vec::new(),
+            "genus" => vec!["layers", "weather"],
+            _ => vec![key],
+        });
+        self.animation.override_by(changed);
         self.animation.keep_only_what_is_in(&self.scene);
         Ok(())
     }
