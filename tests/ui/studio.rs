@@ -474,7 +474,7 @@ fn a_genus_comes_by_its_name_and_says_what_its_water_does() {
     editor.click("genus.Cumulus humilis");
     editor.click_label("Beside these clouds");
     assert_eq!(editor.scene().layers.len(), 2);
-    assert!(said(&editor, "Layer 2: free path"), "its extinction is given");
+    assert!(said(&editor, "Layer 2: droplets of 5.9"), "water, not ice");
     editor.harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     editor.harness.run();
     assert_eq!(editor.scene().layers.len(), 1, "one step");
