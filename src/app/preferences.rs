@@ -26,6 +26,16 @@ choices! {
     }
 }
 
+choices! {
+    /// What lengths and speeds are shown and typed in. Files and `--set` have metres.
+    pub enum Units {
+        /// Metres, metres per second.
+        Metric ("Metres"),
+        /// Feet, knots, as pilots have them.
+        Aviation ("Feet and knots"),
+    }
+}
+
 /// Everything that is kept between runs. Fields that a file does not have, or has too many of, do no harm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -40,6 +50,8 @@ pub struct Preferences {
     pub favourites: BTreeSet<PathBuf>,
     /// What the mouse does over the picture.
     pub habit: Habit,
+    /// What lengths and speeds are shown in.
+    pub units: Units,
     /// Whether the first steps have been told.
     pub is_introduced: bool,
 }
@@ -52,6 +64,7 @@ impl Default for Preferences {
             recent: Vec::new(),
             favourites: BTreeSet::new(),
             habit: Habit::Blender,
+            units: Units::Metric,
             is_introduced: false,
         }
     }

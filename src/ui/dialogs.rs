@@ -10,7 +10,7 @@ use super::export_form::{self, ExportForm};
 use super::{Command, Library, State, row};
 use crate::app::action::{Action, Answer, Browse, Request};
 use crate::app::document::Document;
-use crate::app::preferences::{Habit, Preferences};
+use crate::app::preferences::{Habit, Preferences, Units};
 use crate::scene::file_stem;
 use crate::scene::param::Choice as _;
 
@@ -309,6 +309,16 @@ fn liked(ui: &mut Ui, preferences: &mut Preferences) -> Fate {
                 let chosen = preferences.habit == *habit;
                 if ui.selectable_label(chosen, habit.title()).on_hover_text(habit.doc().trim()).clicked() {
                     preferences.habit = *habit;
+                }
+            }
+        });
+        ui.end_row();
+        ui.label("Lengths and speeds");
+        ui.horizontal(|ui| {
+            for units in Units::ALL {
+                let chosen = preferences.units == *units;
+                if ui.selectable_label(chosen, units.title()).on_hover_text(units.doc().trim()).clicked() {
+                    preferences.units = *units;
                 }
             }
         });

@@ -201,6 +201,7 @@ pub fn show(
         if state.show_panel {
             let size = if width < 900.0 { 300.0 } else { 350.0 };
             timeline::note_keyed(ui, document.animation());
+            row::note_units(ui, preferences.units);
             egui::Panel::right("parameters").default_size(size).size_range(260.0..=most).show(ui, |ui| {
                 ui.add_space(4.0);
                 actions.extend(panel::show(ui, &mut state.panel, &document.preset().scene, document.quality()));

@@ -2,9 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align, DragValue, Layout, Response, Slider, Ui, UiBuilder, Vec2};
+use egui::{Align, DragValue, Id, Layout, Response, Slider, Ui, UiBuilder, Vec2};
 
 use super::{clipboard, timeline};
+use crate::app::preferences::Units;
 use crate::scene::expression::evaluate;
 use crate::scene::param::{ChoiceInfo, Colour, FileName, Info, Unit, label};
 
@@ -14,6 +15,27 @@ const NUMBER_WIDTH: f32 = 84.0;
 const RESET_WIDTH: f32 = 18.0;
 /// Ranges wider than this get no slider: nobody can hit anything on it.
 const WIDEST_SLIDER: f64 = 90_000.0;
+
+/// Remembers what lengths and speeds are shown in.
+pub(super) fn note_units(ui: &Ui, units: Units) {
+    ui.data_mut(|data| data.insert_temp(Id::unique("units"), units));
+}
+
+/// How numbers of a unit are shown here: what one of them is worth in the parameter's own, and what stands behind it.
+fn shown_in(ui: &Ui, unit: Unit) -> (f64, &'static str) {
+    let units = ui.data(|data| data.get_temp(Id::unique("units"))).unwrap_or(Units::Metric);
+    match (units, unit) {
+        (Units::Aviation, Unit::Metres) => (0.3048, " ft"),
+        (Units::Aviation, Unit::MetresPerSecond) => (0.514_444, " kn"),
+        _ => (1.0, unit.suffix()),
+    }
+}
+
+/// A typed number in the parameter's own unit: one that names no unit is in what is shown.
+fn typed(text: &str, unit: Unit, worth: f64) -> Option<f64> {
+    let value = evaluate(text, unit)?;
+    Some(if text.contains(|letter: char| letter.is_alphabetic()) { value } else { value * worth })
+}
 
 /// Names a widget for accessibility and tests; `key` identifies it among namesakes.
 pub(super) fn name(ui: &Ui, response: &Response, name: &str, key: &str) {
@@ -178,13 +200,14 @@ fn number_control(ui: &mut Ui, scale: &Scale<'_>, value: &mut f64) -> bool {
         (high - low) / 500.0
     };
     let (whole, unit) = (scale.whole, scale.unit);
+    let (worth, suffix) = shown_in(ui, unit);
     let field = DragValue::new(value)
         .range(scale.range.clone())
         .speed(speed)
-        .suffix(unit.suffix())
+        .suffix(suffix)
         .update_while_editing(false)
-        .custom_formatter(move |value, _| if whole { format!("{value:.0}") } else { number(value) })
-        .custom_parser(move |text| evaluate(text, unit));
+        .custom_formatter(move |value, _| if whole { format!("{value:.0}") } else { number(value / worth) })
+        .custom_parser(move |text| typed(text, unit, worth));
     let width = if with_slider { NUMBER_WIDTH } else { ui.available_width() };
     let response = ui.add_sized([width.min(ui.available_width()), ui.spacing().interact_size.y], field);
     name(ui, &response, &format!("{} value", scale.title), &format!("{}.value", scale.key));
@@ -198,10 +221,10 @@ fn number_control(ui: &mut Ui, scale: &Scale<'_>, value: &mut f64) -> bool {
 #[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
 pub(super) fn float(ui: &mut Ui, key: &str, info: &Info<f32>, value: &mut f32) -> bool {
     let title = info.label();
-    let suffix = info.unit.suffix();
+    let (worth, suffix) = shown_in(ui, info.unit);
     let range = info.range.clone().unwrap_or(f32::MIN..=f32::MAX);
     let (low, high) = (f64::from(*range.start()), f64::from(*range.end()));
-    let show = |value: f32| format!("{}{suffix}", number(f64::from(value)));
+    let show = |value: f32| format!("{}{suffix}", number(f64::from(value) / worth));
     let shown_range = info.range.as_ref().map(|range| format!("{} to {}", show(*range.start()), show(*range.end())));
     let help = Help { key, doc: info.doc, range: shown_range, default: show(info.default), can_move: true };
     let scale =

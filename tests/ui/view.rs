@@ -121,7 +121,12 @@ fn preferences_and_help_open_and_first_steps_are_told_once() {
         editor.harness.run();
         editor.click_label("Maya");
         assert_eq!(editor.harness.state().preferences.habit, Habit::Maya);
+        editor.click_label("Feet and knots");
         editor.click_label("Close");
+        editor.type_number("weather.size_m", "80000");
+        assert!((editor.scene().weather.size_m - 24_384.0).abs() < 0.1, "feet: {}", editor.scene().weather.size_m);
+        editor.type_number("weather.size_m", "30 km");
+        assert!((editor.scene().weather.size_m - 30_000.0).abs() < 0.1, "named: {}", editor.scene().weather.size_m);
         editor.harness.key_press_modifiers(Modifiers::SHIFT, egui::Key::F1);
         editor.harness.run();
         assert_eq!(editor.harness.state().ui.dialog, Some(Dialog::Help));
