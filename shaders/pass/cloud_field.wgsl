@@ -312,10 +312,12 @@ fn texture_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
 #endif
 
 #if PRODUCT
-// Texels of the octaves' noise that are as wide as the step at which noises are read at their finest level, in tiles.
+// The large noise's texels are 150/8 m wide where layers are as they come, those of the octaves' noise an eighth of a cell. Where the
+// march reads the former coarser, it reads octaves whose texels are smaller than those coarser by as much more: this over the
+// size of a cell, in metres times the 8 cells of a tile.
 const FINEST_OCTAVE: f32 = 1200.0;
-// Octaves of coarser levels than this are their mean: cells are smaller than what a step sees.
-const COARSEST_OCTAVE: f32 = 4.0;
+// From the first of these levels to the second octaves go over to their mean: cells are smaller than what a step sees.
+const COARSEST_OCTAVES: vec2f = vec2f(2.5, 3.5);
 // Means of the noises in pass/bake_octave.wgsl.
 const MEAN_OCTAVES: vec2f = vec2f(0.5, 0.45);
 
@@ -327,13 +329,15 @@ fn octaves_at(q: vec3f, from_world: vec4f, octaves: vec4f, channel: u32, level: 
   var frequency = 1.0;
   let place = q * from_world.w + from_world.xyz;
   for (var i = 0u; i < u32(octaves.x); i++) {
-    let own = max(level + log2(FINEST_OCTAVE * from_world.w * frequency), 0.0);
-    if (own > COARSEST_OCTAVE) {
-      sum += amplitude * MEAN_OCTAVES[channel];
-    } else {
+    // At level 0 everything is read as fine as it is.
+    let own = max(level + min(level, 1.0) * log2(FINEST_OCTAVE * from_world.w * frequency), 0.0);
+    let mean = smoothstep(COARSEST_OCTAVES.x, COARSEST_OCTAVES.y, own);
+    if (mean < 1.0) {
       count_read();
       let noise = textureSampleLevel(octave_noise, linear_repeat, place * frequency, own);
-      sum += amplitude * noise[channel + 2u * (i % 2u)];
+      sum += amplitude * mix(noise[channel + 2u * (i % 2u)], MEAN_OCTAVES[channel], mean);
+    } else {
+      sum += amplitude * MEAN_OCTAVES[channel];
     }
     weight += amplitude;
     amplitude *= octaves.y;

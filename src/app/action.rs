@@ -7,7 +7,7 @@ use crate::lab::accuracy::Setting;
 use crate::lab::bench::Rounds;
 use crate::lab::suite::SuiteKind;
 use crate::render::truth::Goal;
-use crate::scene::{Animation, Bookmark, Camera, Preset, Quality, QualityLevel, Scene};
+use crate::scene::{Animation, Bookmark, Camera, LARGEST_WHOLE_PX, Preset, Quality, QualityLevel, Scene};
 
 /// One wish of the user.
 #[derive(Clone, Debug, PartialEq)]
@@ -334,6 +334,14 @@ pub struct Export {
     pub region: Option<[f32; 4]>,
     /// Where it goes.
     pub path: PathBuf,
+}
+
+impl Export {
+    /// Whether it is made of parts that are rendered one after the other: faces, or bands.
+    pub fn is_in_parts(&self) -> bool {
+        let [width, height] = self.size.map(u64::from);
+        matches!(self.shape, Shape::CubeFaces | Shape::CubeCross) || width * height > LARGEST_WHOLE_PX
+    }
 }
 
 impl Action {

@@ -164,7 +164,12 @@ impl Document {
                 let before = self.state();
                 self.change(action);
                 let (animation, layers) = (&mut self.preset.animation, &self.preset.scene.layers);
-                if let Action::EditScene { key, .. } = action {
+                if let Action::EditScene { key, .. } = action
+                    && key == "genus"
+                {
+                    // It brings layers and weather of its own.
+                    animation.override_by(["layers", "weather", "domain"]);
+                } else if let Action::EditScene { key, .. } = action {
                     animation.follow(key, "layers", &before.preset.scene.layers, layers);
                     let maps = [&before.preset.scene, &self.preset.scene].map(|scene| &scene.weather.layers);
                     animation.follow(key, "weather.layers", maps[0], maps[1]);

@@ -18,6 +18,8 @@ const MOST_WINDOWS: u32 = 64;
 pub(super) struct Recovery {
     path: PathBuf,
     written: Option<Preset>,
+    /// What the newest file held when the program started: written again it would push an older one out.
+    found: Option<Preset>,
     last: Instant,
     /// Held while the window is open, so that other windows leave its copy alone.
     _lock: Option<File>,
@@ -71,12 +73,13 @@ impl Recovery {
             if is_left {
                 // Copies that nobody holds: those of a window that has crashed.
                 let left = Self::read_all(folder, &path);
-                return (Self { path, written: None, last: Instant::now(), _lock: lock }, left);
+                let found = left.copies.first().map(|(preset, _)| preset.clone()).filter(|_| path.exists());
+                return (Self { path, written: None, found, last: Instant::now(), _lock: lock }, left);
             }
             own.get_or_insert((path, lock));
         }
         let (path, lock) = own.unwrap_or_else(|| (copy_of(folder, 0), None));
-        (Self { path, written: None, last: Instant::now(), _lock: lock }, Left::default())
+        (Self { path, written: None, found: None, last: Instant::now(), _lock: lock }, Left::default())
     }
 
     fn read_all(folder: &Path, newest: &Path) -> Left {
@@ -122,6 +125,8 @@ impl Recovery {
             if self.written.take().is_some() {
                 self.clear();
             }
+        } else if self.found.take_if(|found| found == document.preset()).is_some() {
+            self.written = Some(document.preset().clone());
         } else if self.written.as_ref() != Some(document.preset()) {
             // Each grows older by one up to the first gap, or over the oldest. What cannot be moved is not worth a word here.
             let aged = copies(&self.path);
@@ -201,6 +206,15 @@ mod tests {
         drop(recovery);
         let (recovery, left) = Recovery::open(folder.path());
         assert_eq!(names(&left), ["7", "6", "5", "4", "3"]);
+        // A state that ends the program again and again does not push the others out.
+        drop(recovery);
+        for _ in 0..3 {
+            let (mut recovery, left) = Recovery::open(folder.path());
+            assert_eq!(names(&left), ["7", "6", "5", "4", "3"]);
+            recovery.keep(&document);
+            drop(recovery);
+        }
+        let (recovery, _) = Recovery::open(folder.path());
         recovery.clear();
         assert!(Recovery::open(folder.path()).1.copies.is_empty(), "all are gone");
     }

@@ -8,6 +8,7 @@ use super::statistics::Statistics;
 use super::truth::{CompareJob, Outcome, Truths, Wishes};
 use crate::gpu::Gpu;
 use crate::plan::{Forced, FramePlan, Integrator};
+use crate::render::probe::Probe;
 use crate::render::{LightHistogram, Progress, RenderError, Renderer};
 use crate::scene::{DomainKind, Frame, Output, Projection, Quality, Scene, UpdateFraction, Window};
 use crate::ui::{LabState, Picked, Readout};
@@ -184,10 +185,13 @@ impl Viewport {
         let mut probe = None;
         if let Some(far) = distance_m {
             let place = [far * towards.x, eye[1] + far * towards.y, far * towards.z];
-            probe = self.renderer.probe(&point, place)?;
-            if probe.is_none() {
-                return Ok(None);
+            let Some(found) = self.renderer.probe(&point, place)? else { return Ok(None) };
+            // As the panel numbers them.
+            let mut densities = [0.0; 4];
+            for ((index, _), density) in scene.numbered_layers().zip(found.densities) {
+                densities[index] = density;
             }
+            probe = Some(Probe { densities, ..found });
         }
         Ok(Some(Picked {
             at,

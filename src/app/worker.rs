@@ -239,7 +239,13 @@ impl Helm {
 
     /// Says what becomes of the still.
     pub(super) fn turn(&self, steering: Steering) {
-        *self.lock() = steering;
+        let mut now = self.lock();
+        // What ends does not go on, but can still be given up.
+        let is_settled = *now == Steering::GiveUp || *now == Steering::End && steering != Steering::GiveUp;
+        if !is_settled {
+            *now = steering;
+        }
+        drop(now);
         self.turned.notify_all();
     }
 

@@ -57,8 +57,9 @@ struct Photograph {
 impl Photograph {
     fn read(path: &Path) -> Result<Self> {
         let (image, is_shown) = read_picture(path)?;
-        let image = smaller(&image, image.width.div_ceil(WIDEST_PX));
         let is_panorama = image.width == 2 * image.height;
+        let image = smaller(&image, image.width.max(image.height).div_ceil(WIDEST_PX));
+        let is_panorama = is_panorama && image.width >= 2;
         let size = [image.width, image.height];
         let sky = if is_panorama { upper_half(&image) } else { image };
         let realism = Realism::of(&sky);

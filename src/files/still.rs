@@ -132,12 +132,19 @@ impl StillFile<'_> {
         files_of_still(self.path, self.cube)
     }
 
-    /// Renders and writes it. `proceed` hears the share that is done, and says what becomes of it. If it is given up, nothing is
+    /// Renders and writes it. `proceed` hears the share that is done, and says what becomes of it; cubes and
+    /// bands are made to their end. If it is given up, nothing is
     /// written but for the faces of a cube that were finished. Returns whether it was written.
     ///
     /// # Errors
     /// [`StillError`].
     pub fn render(&self, renderer: &mut Renderer, proceed: &mut dyn FnMut(f32) -> Proceed) -> Result<bool, StillError> {
+        let is_in_parts = self.cube.is_some() || self.is_large();
+        let proceed = &mut |share: f32| match proceed(share) {
+            // Parts of unlike samples would show their seams.
+            Proceed::WithWhatIsDone if is_in_parts => Proceed::On,
+            asked => asked,
+        };
         match self.cube {
             None => {
                 let scene = &self.about.preset.scene;

@@ -92,7 +92,9 @@ const HDR_MAGIC: &[u8] = b"#?";
 pub fn read_picture(path: &Path) -> Result<(FloatImage, bool), ImageError> {
     let bytes = read_limited(path)?;
     if bytes.starts_with(EXR_MAGIC) {
-        return Ok((read_exr(path)?, false));
+        let image = decode_exr(path, &bytes, |_, _| Ok(()))?;
+        check_finite(path, image.width, &image.rgba, image.depth.as_deref())?;
+        return Ok((image, false));
     }
     let is_shown = bytes.starts_with(PNG_MAGIC);
     let (width, height, mut rgba) = if is_shown {

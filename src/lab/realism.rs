@@ -1,7 +1,7 @@
 //! How like a photograph a picture is, in figures: how its light is spread, its colours, and the sizes of its structures (Thomann
 //! 2020, section 6.6.4, compares histograms; the spectrum of sizes says what they cannot).
 //!
-//! All figures are of logarithms, so that neither exposure nor white balance of a camera alone decides. A distance between two
+//! All figures are of logarithms, and luminance is from its median, so that exposure does not matter; a white balance does. A distance between two
 //! distributions is the earth mover's (Rubner, Tomasi and Guibas 2000): in one dimension the mean distance of quantiles.
 
 use super::colour::luminance;
@@ -11,6 +11,8 @@ use crate::images::FloatImage;
 const QUANTILES: usize = 256;
 /// Brighter than so many times the median is the sun or what shines around it, and no structure.
 const GLARE_STOPS: f64 = 5.0;
+/// Darker than so many stops below the median is black, as silhouettes and borders are.
+const DARKEST_STOPS: f64 = 8.0;
 /// Fewest pixels across that a coarser level of the pyramid has.
 const FEWEST: usize = 8;
 
@@ -83,7 +85,7 @@ impl Realism {
             .filter(|rgba| luminance(pixel(rgba)).log2() < glare)
             .map(|rgba| [rgba[0], rgba[2]].map(|channel| f64::from(channel / rgba[1]).log2()))
             .collect();
-        let seen: Vec<f64> = stops.iter().map(|value| value.min(glare) - median).collect();
+        let seen: Vec<f64> = stops.iter().map(|value| value.clamp(median - DARKEST_STOPS, glare) - median).collect();
         Self {
             structures: structures(&seen, size),
             luminance: Spread::of(seen),
@@ -212,6 +214,7 @@ mod tests {
             Realism::of(&sun)
         };
         assert_eq!(with_sun(1e3), with_sun(1e6), "what shines is cut off");
+        assert_eq!(with_sun(1e-6).structures, with_sun(0.0).structures, "and what is black");
         let far = Realism::of(&picture).distances(&with_sun(1e6));
         assert!(far.luminance < 0.05 && far.red < 1e-6, "{far:?}");
     }

@@ -71,10 +71,24 @@ impl PixelSamples {
 }
 
 /// A place in the unit square: no two of `count` share a row or a column of `count` each (rooks on a board), in the order
-/// of the van der Corput sequence. A single one lies in the middle.
+/// of the Halton sequence, begun in the middle, so that any first few of them balance too. A single one lies in the middle.
 fn point(index: u32, count: u32) -> Vec2 {
-    let row = (0..count).filter(|other| other.reverse_bits() < index.reverse_bits()).count();
-    (Vec2::new(index as f32, row as f32) + 0.5) / count as f32
+    let rank = |base: u32| {
+        let own = inverse(index, base);
+        (0..count).filter(|other| inverse(*other, base) < own).count() as f32
+    };
+    (Vec2::new(rank(2), rank(3)) + 0.5) / count as f32
+}
+
+/// Digits of a number behind the point in reverse (van der Corput), half a turn on.
+fn inverse(mut index: u32, base: u32) -> f64 {
+    let (mut value, mut digit) = (0.0, 1.0);
+    while index > 0 {
+        digit /= f64::from(base);
+        value += digit * f64::from(index % base);
+        index /= base;
+    }
+    (value + 0.5).fract()
 }
 
 #[cfg(test)]
@@ -97,6 +111,13 @@ mod tests {
             let expected = (0..count).map(|row| (row as f32 + 0.5) / count as f32);
             assert!(rows.iter().zip(expected).all(|(seen, row)| (seen - row).abs() < 1e-6), "{count}: {rows:?}");
         }
-        assert_eq!([0, 1, 2, 3].map(|index| point(index, 4).y * 4.0), [0.5, 2.5, 1.5, 3.5], "no diagonal");
+        for count in [4u32, 8, 16, 64] {
+            for first in 1..=count {
+                let mean = (0..first).map(|index| point(index, count)).sum::<Vec2>() / first as f32;
+                assert!((mean - 0.5).abs().max_element() < 0.26, "the first {first} of {count} lie aside: {mean}");
+            }
+            let begin = point(0, count);
+            assert!((begin - 0.5).abs().max_element() < 0.15, "the first of {count}: {begin}");
+        }
     }
 }

@@ -91,10 +91,22 @@ pub fn apply(assignments: &[String], scene: &mut Scene, quality: &mut Quality) -
         match key.strip_prefix(QUALITY) {
             None if key == "genus" => set_genus(scene, value)?,
             Some(key) => set(quality, key, value).map_err(|error| error.below(QUALITY))?,
-            None => set(scene, key, value)?,
+            None => {
+                set(scene, key, value)?;
+                follow_edit(scene, key);
+            }
         }
     }
     scene.problems().into_iter().next().map_or(Ok(()), |problem| Err(EditError::Rule(problem)))
+}
+
+/// Lets what depends on each other follow an edit of a parameter: see `CloudLayer::follow_edit`.
+pub fn follow_edit(scene: &mut Scene, key: &str) {
+    let layer = key.strip_prefix("layers.").and_then(|rest| rest.split_once('.'));
+    let Some((Ok(index), name)) = layer.map(|(index, name)| (index.parse::<usize>(), name)) else { return };
+    if let Some(layer) = scene.layers.get_mut(index) {
+        layer.follow_edit(name);
+    }
 }
 
 fn set_genus(scene: &mut Scene, value: &str) -> Result<(), EditError> {
@@ -454,6 +466,10 @@ mod tests {
         let both = set("genus=+Cumulonimbus").expect("there is room");
         assert_eq!((both.layers.len(), both.layers[0] == cirrus.layers[0]), (3, true));
         assert!(set("genus=+Nimbostratus").expect_err("full").to_string().contains("more than 4 cloud layers"));
+        let given = set("layers.0.scattering_per_m=0.3").expect("it is in range");
+        assert!((given.layers[0].extinction_per_m() - 0.3).abs() < 1e-6, "what was set last counts");
+        let water = set("layers.0.water_g_per_m3=0.5").expect("it is in range");
+        assert!((water.layers[0].extinction_per_m() - 0.3).abs() > 0.01, "and the water after it");
         let error = set("genus=Cirus").expect_err("a slip").to_string();
         assert!(error.contains("Cirrocumulus") && error.contains("Cirus"), "{error}");
     }

@@ -64,15 +64,15 @@ impl Genus {
         Some(builtin::find(self.recipe().0)?.preset().ok()?.scene)
     }
 
-    /// Gives a sky the clouds and the weather of this genus in place of its own. Light, air and camera stay.
+    /// Gives a sky the clouds, the weather and the domain of this genus in place of its own. Light, air and camera stay.
     pub fn replace(self, scene: &mut Scene) {
         if let Some(sky) = self.sky() {
-            (scene.layers, scene.weather) = (sky.layers, sky.weather);
+            (scene.layers, scene.weather, scene.domain) = (sky.layers, sky.weather, sky.domain);
         }
     }
 
-    /// Adds it to a sky's own clouds, as much of it as in its own sky: coverage and map of the sky stay, and the new layers
-    /// make up for them.
+    /// Adds it to a sky's own clouds, as much of it as in its own sky: coverage, map and domain of the sky stay, and the new
+    /// layers make up for the first two, on this side of a front.
     ///
     /// # Errors
     /// [`TooManyLayers`]; the sky is then as it was.

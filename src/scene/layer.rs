@@ -176,8 +176,8 @@ params! {
         water_g_per_m3: f32 = 0.35, 0.0001..=5.0, None, logarithmic;
         /// Droplets, or crystals, in a cubic centimetre of air. For optics from droplets.
         droplets_per_cm3: f32 = 400.0, 0.001..=5000.0, None, logarithmic;
-        /// Light scattered per metre at full density.
-        scattering_per_m: f32 = 0.08, 0.0..=1.0, PerMetre, logarithmic;
+        /// Light scattered per metre at full density. Editing it takes optics as given; editing water or droplets takes them from there.
+        scattering_per_m: f32 = 0.08, 0.0..=2.0, PerMetre, logarithmic;
         /// Light absorbed per metre at full density. Water droplets absorb almost nothing.
         absorption_per_m: f32 = 0.0, 0.0..=1.0, PerMetre;
         /// Extinction towards the light relative to the true one; below 1 stands in for multiple scattering (the thesis uses 0.4 on cumulus).
@@ -206,6 +206,15 @@ impl Phase {
 }
 
 impl CloudLayer {
+    /// Lets its optics come from what was edited last, the parameter of that name: extinction, or water and droplets.
+    pub fn follow_edit(&mut self, name: &str) {
+        match name {
+            "scattering_per_m" => self.optics = Optics::Given,
+            "water_g_per_m3" | "droplets_per_cm3" => self.optics = Optics::Droplets,
+            _ => {}
+        }
+    }
+
     /// Whether the layer can hold any cloud at all.
     pub fn is_visible(&self) -> bool {
         self.enabled && self.density > 0.0 && self.extinction_per_m() > 0.0 && self.top_m - self.base_m >= 1.0

@@ -136,8 +136,14 @@ impl Scene {
 
     /// The layers that can hold any cloud.
     pub fn visible_layers(&self) -> impl Iterator<Item = &CloudLayer> {
+        self.numbered_layers().map(|(_, layer)| layer)
+    }
+
+    /// The same, each with its index among all.
+    pub fn numbered_layers(&self) -> impl Iterator<Item = (usize, &CloudLayer)> {
         let coverage = self.weather.greatest_coverage();
-        self.layers.iter().take(MAX_LAYERS).filter(move |layer| layer.is_visible() && layer.is_covered(coverage))
+        let all = self.layers.iter().enumerate().take(MAX_LAYERS);
+        all.filter(move |(_, layer)| layer.is_visible() && layer.is_covered(coverage))
     }
 
     /// Unit vector towards the sun.

@@ -24,6 +24,10 @@ pub fn morph(from: &Scene, to: &Scene, share: f32) -> Scene {
         begin.weather.layers.clone_from(&nearer);
         end.weather.layers = nearer;
     }
+    // Where extinction comes from different things on the two sides, it goes from the one value to the other.
+    for (from, to) in begin.layers.iter_mut().zip(&mut end.layers).filter(|(from, to)| from.optics != to.optics) {
+        (*from, *to) = (from.with_given_optics(), to.with_given_optics());
+    }
     let mut values = Values::default();
     end.visit(&mut values);
     begin.visit(&mut Towards { values, share });

@@ -205,7 +205,7 @@ impl Preset {
         // A genus brings layers and weather of its own, unless it joins those that are there.
         let changed = assignments.iter().filter_map(|set| edit::split(set).ok()).flat_map(|(key, value)| match key {
             "genus" if value.starts_with('+') => Vec::new(),
-            "genus" => vec!["layers", "weather"],
+            "genus" => vec!["layers", "weather", "domain"],
             _ => vec![key],
         });
         self.animation.override_by(changed);
@@ -436,7 +436,8 @@ impl Source<'_> {
 /// A name as the stem of a file's name: no separators, no spaces.
 pub fn file_stem(name: &str) -> String {
     let keep = |letter: char| if letter.is_alphanumeric() || letter == '-' { letter } else { '-' };
-    let name: String = name.trim().to_lowercase().chars().map(keep).collect();
+    // Systems end names at some 255 bytes.
+    let name: String = name.trim().to_lowercase().chars().map(keep).take(60).collect();
     if name.is_empty() { "sky".to_owned() } else { name }
 }
 

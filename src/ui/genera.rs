@@ -18,7 +18,7 @@ pub(super) fn show(ui: &mut Ui, scene: &mut Scene) -> Option<&'static str> {
                 let instead = ui.button("In place of these clouds");
                 if instead.on_hover_text("Clouds and weather of this genus; light and camera stay").clicked() {
                     genus.replace(scene);
-                    changed = Some("layers");
+                    changed = Some("genus");
                     ui.close();
                 }
                 let is_room = scene.layers.len() < MAX_LAYERS;

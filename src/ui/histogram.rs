@@ -105,7 +105,9 @@ fn buttons(ui: &mut Ui, state: &mut HistogramState, document: &Document, actions
     auto.on_hover_text("The exposure follows the picture; off locks it as it is");
     let stripes = ui.checkbox(&mut state.stripes, "Stripes");
     row::name(ui, &stripes, "Stripes over what clips", "histogram.stripes");
-    stripes.on_hover_text("Stripes over what is as bright as the screen goes. They are in no file but a screenshot");
+    stripes.on_hover_text(
+        "Stripes over what is as bright as the screen goes. They are in no file but screenshots, and in snapshots",
+    );
     let is_false = document.preset().scene.display.tone_map == ToneMap::FalseColour;
     let colours = ui.selectable_label(is_false, "False colour");
     row::name(ui, &colours, "False colour", "histogram.false_colour");

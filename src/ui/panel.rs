@@ -7,7 +7,7 @@ use super::probe::{Filter, Probe, Reset, duplicate_last_from};
 use super::{clipboard, row};
 use crate::app::action::{Action, Browse, Request};
 use crate::scene::param::{Choice, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor};
-use crate::scene::{MAX_LAYERS, Quality, QualityLevel, Scene};
+use crate::scene::{MAX_LAYERS, Quality, QualityLevel, Scene, edit};
 
 /// Sections that are unfolded when the program starts for the first time.
 const OPEN_AT_FIRST: [&str; 2] = ["weather", "sun"];
@@ -40,8 +40,9 @@ pub(super) fn show(ui: &mut Ui, state: &mut PanelState, scene: &Scene, quality: 
         }
         let mut rows = Rows::new(ui, filter, String::new());
         scene.visit(&mut rows);
-        let (edit, browse, shown) = (rows.edit, rows.browse, rows.shown);
-        if let Some(key) = edit {
+        let (edited, browse, shown) = (rows.edit, rows.browse, rows.shown);
+        if let Some(key) = edited {
+            edit::follow_edit(&mut scene, &key);
             actions.push(Action::EditScene { key, scene: Box::new(scene) });
         }
         if let Some(key) = browse {

@@ -129,11 +129,14 @@ fn busy(ui: &mut Ui, busy: &Busy, actions: &mut Vec<Action>) {
                 actions.push(Action::Ask(Request::Steer(wanted)));
             }
         };
+        let is_settled = matches!(steering, Steering::End | Steering::GiveUp);
         button("Cancel", "Gives it up; nothing is written", ("Cancel the work", "busy.cancel"), Steering::GiveUp);
-        if !busy.end.is_empty() && steering != Steering::End {
+        if !busy.end.is_empty() && !is_settled {
             button("Stop", busy.end, ("Stop and save", "busy.end"), Steering::End);
         }
-        if waits {
+        if is_settled {
+            ui.weak("ends");
+        } else if waits {
             button("Go on", "Renders on", ("Go on with the work", "busy.wait"), Steering::On);
         } else {
             button("Pause", "Leaves the processors to others", ("Pause the work", "busy.wait"), Steering::Wait);

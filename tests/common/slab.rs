@@ -84,6 +84,19 @@ pub(crate) fn noisy_layer(model: u32, base_m: f32, top_m: f32, coverage: f32) ->
     }
 }
 
+/// The same with octaves of Perlin and Voronoi noise, whose cells are 900 m wide.
+pub(crate) fn of_octaves(layer: LayerUniforms) -> LayerUniforms {
+    let from_world = Vec4::new(0.0, 0.0, 0.0, 1.0 / (8.0 * 900.0));
+    LayerUniforms {
+        perlin_from_world: from_world,
+        perlin_octaves: Vec4::new(3.0, 0.5, 2.0, 0.3),
+        voronoi_from_world: from_world,
+        voronoi_octaves: Vec4::new(3.0, 0.4, 2.0, 0.25),
+        product_gain: Vec4::new(4.0, 0.0, 0.0, 0.0),
+        ..layer
+    }
+}
+
 /// The uniform of air that is not there.
 pub(crate) fn no_air() -> AirUniforms {
     AirUniforms { planet_radius_m: RADIUS_M, top_altitude_m: 1e5, sun_angular_radius: 0.0047, ..AirUniforms::zeroed() }

@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 use nephoscope::gpu::{ProgramKey, Texture};
 
 use crate::common::field::{Bound, Field, evaluated, linear_repeat, run, view_of};
-use crate::common::slab::{FLAT, March, PROFILE, THESIS, noisy_layer};
+use crate::common::slab::{FLAT, March, PRODUCT, PROFILE, THESIS, noisy_layer, of_octaves};
 use crate::common::{Case, Random, bits3, gpu};
 
 /// As many cells as the renderer has.
@@ -12,7 +12,7 @@ const CELLS: [u32; 3] = [128, 16, 128];
 
 fn key(file: &'static str, layers: usize) -> ProgramKey {
     ProgramKey::plain(file)
-        .with_flags(["PROFILE", "THESIS", "DETAIL", "CURL"])
+        .with_flags(["PROFILE", "THESIS", "PRODUCT", "DETAIL", "CURL"])
         .with_constant("DOMAIN", FLAT)
         .with_constant("LAYERS", u32::try_from(layers).expect("few layers"))
 }
@@ -48,7 +48,7 @@ fn evaluate(march: &March, layers: usize, cases: &[Case]) -> Vec<[f32; 4]> {
 #[test]
 fn no_cloud_stands_where_the_map_promises_clear_air() {
     let mut random = Random::new(41);
-    for models in [&[PROFILE][..], &[THESIS], &[PROFILE, THESIS]] {
+    for models in [&[PROFILE][..], &[THESIS], &[PROFILE, THESIS], &[PRODUCT, PROFILE]] {
         // How far the layers lean, and how many ways have to end near cloud at least: a strong shear shortens them.
         for (coverage, anvil, lean, near) in [(0.25, 0.0, 500.0, 20), (0.5, 0.7, 4000.0, 5), (0.75, 0.2, 500.0, 20)] {
             let mut march = March::slab(3000.0, 0.04, Vec3::Y);
@@ -59,6 +59,13 @@ fn no_cloud_stands_where_the_map_promises_clear_air() {
                 slot.lean = Vec4::new(lean, -0.4 * lean, slot.lean.z, 0.0);
                 slot.map_from_world += Vec4::new(0.3, 0.1, 0.0, 0.0) * index as f32;
                 slot.anvil = anvil;
+                if *model == PRODUCT {
+                    *slot = of_octaves(*slot);
+                } else if models[0] == PRODUCT {
+                    // Fibres of a form of their own.
+                    slot.form = Vec4::new(0.0, 0.0, 1.0, 1.0);
+                    slot.combing = Vec4::new(0.6, -0.8, 1.0 - 1.0 / 7.0, 0.0);
+                }
             }
             let mut cases: Vec<Case> = Vec::new();
             for _ in 0..100_000 {

@@ -8,7 +8,7 @@ use nephoscope::render::uniforms::scene::{LayerUniforms, SceneUniforms};
 use wgpu::util::DeviceExt as _;
 
 use crate::common::field::{Field, linear_repeat, map_uniforms, run, view_of};
-use crate::common::slab::{PRODUCT, PROFILE, THESIS, UNIFORM, noisy_layer};
+use crate::common::slab::{PRODUCT, PROFILE, THESIS, UNIFORM, noisy_layer, of_octaves};
 use crate::common::{Case, Random, bits4, eval, eval_with, gpu};
 
 /// A layer with anything a scene may ask for, and what textures may hold at a place.
@@ -324,18 +324,12 @@ fn a_form_holds_whatever_the_map_says() {
     assert!(cloudy > 1000 && high > 1000, "{cloudy} and {high}");
 }
 
-/// A layer of Perlin times Voronoi noise whose cells are 900 m wide.
+/// A layer of Perlin times Voronoi noise.
 fn product_layer(octaves: f32, lacunarity: f32) -> LayerUniforms {
-    let from_world = Vec4::new(0.0, 0.0, 0.0, 1.0 / (8.0 * 900.0));
-    LayerUniforms {
-        perlin_from_world: from_world,
-        perlin_octaves: Vec4::new(octaves, 0.5, lacunarity, 0.3),
-        voronoi_from_world: from_world,
-        voronoi_octaves: Vec4::new(octaves, 0.4, lacunarity, 0.25),
-        product_gain: Vec4::new(4.0, 0.0, 0.0, 0.0),
-        lean: Vec4::ZERO,
-        ..noisy_layer(PRODUCT, 1000.0, 3000.0, 0.6)
-    }
+    let mut layer = of_octaves(noisy_layer(PRODUCT, 1000.0, 3000.0, 0.6));
+    (layer.perlin_octaves.x, layer.voronoi_octaves.x) = (octaves, octaves);
+    (layer.perlin_octaves.z, layer.voronoi_octaves.z) = (lacunarity, lacunarity);
+    LayerUniforms { lean: Vec4::ZERO, ..layer }
 }
 
 #[test]

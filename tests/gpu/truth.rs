@@ -4,7 +4,7 @@ use glam::{Vec3, Vec4};
 use nephoscope::gpu::ProgramKey;
 
 use crate::common::field::{Field, evaluated, linear_repeat, view_of};
-use crate::common::slab::{FLAT, March, PROFILE, THESIS, UNIFORM, noisy_layer, slab_light};
+use crate::common::slab::{FLAT, March, PRODUCT, PROFILE, THESIS, UNIFORM, noisy_layer, of_octaves, slab_light};
 use crate::common::truth::{Mean, baked_bounds, blind_bounds, bounds_of, named};
 use crate::common::{Case, Random, bits3, gpu};
 
@@ -217,9 +217,18 @@ fn one_scattering_of_paths_is_the_converged_march() {
 #[test]
 fn no_density_within_reach_exceeds_its_majorant() {
     let mut random = Random::new(77);
-    for model in [PROFILE, THESIS, UNIFORM] {
+    for (model, stretch, form) in [
+        (PROFILE, 1.0, Vec4::ZERO),
+        (PROFILE, 7.0, Vec4::new(0.0, 0.0, 1.0, 1.0)),
+        (THESIS, 1.0, Vec4::ZERO),
+        (UNIFORM, 1.0, Vec4::ZERO),
+        (PRODUCT, 3.0, Vec4::ZERO),
+    ] {
         let mut march = furnace(&[model], Vec3::Y);
         let layer = &mut march.scene.layers[0];
+        *layer = of_octaves(*layer);
+        layer.form = form;
+        layer.combing = if stretch > 1.0 { Vec4::new(0.6, -0.8, 1.0 - 1.0 / stretch, 0.0) } else { Vec4::ZERO };
         // Some reach, lean and coverage that a scene gives; a cell of 64 is 375 m wide.
         layer.lean = Vec4::new(500.0, -200.0, 0.9 * 375.0 / (1.0 + 2.0 * 540.0 / 2200.0), 0.0);
         layer.anvil = random.pick(&[0.0, 0.6, 1.0]);
@@ -249,7 +258,7 @@ fn majorants(march: &March, cases: &[Case]) -> Vec<[f32; 4]> {
     read.extend(Field::baked().noises());
     read.extend(named(baked_bounds()));
     let key = ProgramKey::plain("test/eval_majorant.wgsl")
-        .with_flags(["PROFILE", "THESIS", "UNIFORM", "DETAIL", "CURL"])
+        .with_flags(["PROFILE", "THESIS", "UNIFORM", "PRODUCT", "DETAIL", "CURL"])
         .with_constant("DOMAIN", FLAT)
         .with_constant("LAYERS", 1);
     evaluated(&key, &read, cases)

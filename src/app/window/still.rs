@@ -34,6 +34,8 @@ impl App {
             (Some(_), _) => "Ends after the frame that is being made",
             // They are differences of pictures with like samples.
             (None, Still::LayersExr) => "",
+            // Parts of unlike samples would show their seams.
+            (None, _) if job.export.is_in_parts() => "",
             (None, _) => "Saves it with the samples of each pixel that it has",
         };
         self.session.ui.busy = Some(Busy { text, progress: Some((0.0, None)), steering: Some(Steering::On), end });
@@ -44,7 +46,7 @@ impl App {
     pub(super) fn steer_still(&mut self, steering: Steering) {
         let (Some(helm), Some(busy)) = (&self.helm, &mut self.session.ui.busy) else { return };
         helm.turn(steering);
-        busy.steering = Some(steering);
+        busy.steering = Some(helm.steering());
     }
 
     /// Takes in how far a still is that was begun at a time.
@@ -55,12 +57,23 @@ impl App {
         if let Some(busy) = self.session.ui.busy.as_mut().filter(|busy| busy.steering.is_some()) {
             busy.progress = Some((share, left));
         }
+        self.tell_title();
+    }
+
+    /// Gives the window its title, which says how far a still is, though nothing is drawn.
+    pub(super) fn tell_title(&mut self) {
+        let title = self.session.title();
+        if let Some(live) = self.live.as_mut().filter(|live| live.title != title) {
+            live.window.set_title(&title);
+            live.title = title;
+        }
     }
 
     /// Takes in what became of a still.
     pub(super) fn finish_still(&mut self, result: Result<Option<PathBuf>, String>) {
         let has_ended = self.helm.take().is_some_and(|helm| helm.steering() == Steering::End);
         self.session.ui.busy = None;
+        self.tell_title();
         let toasts = &mut self.session.ui.toasts;
         match result {
             Ok(Some(path)) if has_ended => toasts.info(format!("Saved {} as far as it was", path.display())),

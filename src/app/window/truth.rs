@@ -137,6 +137,8 @@ impl App {
     pub(super) fn take_pictures(&mut self) {
         for request in std::mem::take(&mut self.waiting) {
             match request {
+                // One with stripes is none of the sky's; what has none is drawn while the window rests.
+                Request::KeepPicture(_) if self.session.ui.histogram.stripes => {}
                 Request::KeepPicture(preset) => self.keep_picture(&preset),
                 _ => self.take_snapshot(),
             }

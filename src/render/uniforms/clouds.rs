@@ -126,6 +126,10 @@ fn phase_index(kind: PhaseKind) -> u32 {
 
 /// See [`LayerUniforms::combing`].
 fn combing(scene: &Scene, layer: &CloudLayer) -> Vec4 {
+    if layer.stretch <= 1.0 {
+        // The wind may turn without anything to be made anew.
+        return Vec4::ZERO;
+    }
     let along = wind_mps(&Wind { speed_mps: 1.0, ..scene.wind.clone() }).as_vec2();
     along.extend(1.0 - 1.0 / layer.stretch).extend(0.0)
 }
