@@ -7,7 +7,8 @@ use crate::render::Renderer;
 use crate::scene::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params as _, Visitor};
 use crate::scene::random::{Stream, between};
 use crate::scene::{
-    CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapLayer, MapSource, Output, PhaseKind, Quality, Scene,
+    BodyForm, CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapLayer, MapSource, Output, PhaseKind, Quality,
+    Scene,
 };
 
 /// Width and height of the pictures.
@@ -146,32 +147,41 @@ fn tame(scene: &mut Scene, quality: &mut Quality, own: &mut Stream) {
         scene.weather.edge = MapEdge::Repeat;
     }
     let mut within = |low: f64, high: f64| (low + (high - low) * own.unit()) as f32;
-    scene.weather.coverage = within(0.35, 0.55);
+    scene.weather.coverage = within(0.3, 0.5);
     scene.weather.coverage_changes = false;
-    scene.camera.height_m = within(1.0, 5.0).exp2() * within(1.0, 30.0);
+    scene.camera.height_m = within(1.0, 5.0).exp2() * within(1.0, 18.0);
     scene.camera.pitch_deg = within(5.0, 35.0);
-    scene.camera.field_of_view_deg = within(40.0, 100.0);
+    scene.camera.field_of_view_deg = within(60.0, 110.0);
     quality.max_distance_m = quality.max_distance_m.max(30_000.0);
     (quality.view_steps, quality.step_m) = (quality.view_steps.max(96), quality.step_m.clamp(20.0, 300.0));
-    scene.weather.size_m = scene.weather.size_m.clamp(10_000.0, 40_000.0);
+    scene.weather.size_m = scene.weather.size_m.clamp(8000.0, 20_000.0);
     scene.domain.kind = if scene.domain.kind == DomainKind::Box { DomainKind::Shell } else { scene.domain.kind };
     for map in &mut scene.weather.layers {
         (map.contrast, map.small_share, map.cumulus) = (MapLayer::default().contrast, 0.5, 1.0);
     }
     for (index, layer) in scene.layers.iter_mut().enumerate() {
         layer.enabled = true;
-        (layer.base_m, layer.coverage_offset) = (layer.base_m.min(1500.0), if index == 0 { 0.0 } else { -0.25 });
+        (layer.base_m, layer.coverage_offset) = (layer.base_m.clamp(600.0, 1500.0), 0.0);
         layer.top_m = layer.top_m.clamp(layer.base_m + 300.0, layer.base_m + 3000.0);
         layer.density = layer.density.max(0.5);
         *layer = layer.with_given_optics();
         layer.scattering_per_m = layer.scattering_per_m.max(0.01);
-        layer.map_scale = layer.map_scale.clamp(0.3, 1.0);
-        if index == 0 {
+        layer.map_scale = layer.map_scale.clamp(0.3, 0.7);
+        // Fields as wide as the view show clouds or sky, not both.
+        (layer.stretch, layer.lean_m) = (layer.stretch.min(2.0), layer.lean_m.min(5000.0));
+        // What clouds and sky share is left to the map: thresholds of noises neither above nor below all of it.
+        (layer.perlin.threshold, layer.perlin.multiplier) = (0.5, 3.0);
+        (layer.voronoi.threshold, layer.voronoi.multiplier) = (0.4, 2.0);
+        if index > 0 {
+            // Seldom, or every sky of several layers would be overcast.
+            layer.coverage_offset = if layer.reads_map() { -0.45 } else { 0.0 };
+        } else {
+            layer.form = BodyForm::Map;
             let CloudLayer { edge_softness, shape_strength, detail_strength, .. } = CloudLayer::default();
             (layer.edge_softness, layer.shape_strength) = (edge_softness, shape_strength);
             layer.detail_strength = layer.detail_strength.min(detail_strength);
             layer.sharpness = layer.sharpness.max(0.5);
-            if layer.model == DensityModel::Texture {
+            if matches!(layer.model, DensityModel::Texture | DensityModel::Product) {
                 layer.model = DensityModel::Profile;
             }
         }
