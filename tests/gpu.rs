@@ -3,6 +3,7 @@
 mod common;
 
 mod gpu {
+    mod automaton;
     mod clearance;
     mod density;
     mod display;

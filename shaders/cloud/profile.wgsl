@@ -30,6 +30,11 @@ fn height_profile(weather: Weather, layer: LayerUniforms, h: f32) -> f32 {
   return body * base * sqrt(max(crown, 0.0));
 }
 
+// The same where an automaton's cells, 0..1, stand for it: they have tops of their own.
+fn automaton_profile(cells: f32, weather: Weather, layer: LayerUniforms, h: f32) -> f32 {
+  return weather.body * cells * smoothstep(0.0, layer.base_ramp, h);
+}
+
 // Mean of each of the large noise's sums of billows.
 const MEAN_BILLOW: f32 = 0.48;
 // And, nearly, of its Perlin-Worley noise: half of what the billows leave is added to them.

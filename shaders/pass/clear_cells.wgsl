@@ -1,5 +1,8 @@
 // Where layers may have cloud: 0 in cells of the weather map and of heights that may hold some, far in all others; a
 // channel for each layer. From this pass/clear_spread.wgsl finds how far it is to cloud.
+#if AUTOMATON
+#import "pass/automaton_greatest.wgsl"
+#endif
 #import "pass/cloud_field.wgsl"
 #import "pass/clear_way.wgsl"
 
@@ -30,7 +33,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var way = vec4f(FARTHEST_M);
     for (var i = 0u; i < LAYERS; i++) {
       let layer = scene.layers[i];
-      let body = greatest_body(layer, field);
+      var body = greatest_body(layer, field);
+#if AUTOMATON
+      if (layer.model == MODEL_AUTOMATON) {
+        let uv = (vec2f(id.xy) + 0.5) / vec2f(cells.xz);
+        body *= greatest_of_automaton(uv, heights.x, heights.y);
+      }
+#endif
       if (density_bound_between(layer, body, possible, heights.x, heights.y) > 0.0) {
         way[i] = 0.0;
       }

@@ -16,6 +16,7 @@ const MODEL_UNIFORM: u32 = 2u;
 const MODEL_TEXTURE: u32 = 3u;
 const MODEL_GRID: u32 = 4u;
 const MODEL_PRODUCT: u32 = 5u;
+const MODEL_AUTOMATON: u32 = 6u;
 const DOMAIN_SHELL: u32 = 0u;
 const DOMAIN_FLAT: u32 = 1u;
 const DOMAIN_BOX: u32 = 2u;
@@ -57,6 +58,10 @@ override LAYERS: u32 = 1u;
 
 #if PRODUCT
 @group(1) @binding(20) var octave_noise: texture_3d<f32>;
+#endif
+// Density of the automaton's cells over the map: see pass/automaton_smooth.wgsl.
+#if AUTOMATON
+@group(1) @binding(21) var automaton_cells: texture_3d<f32>;
 #endif
 
 // How a place is read: what Quality leaves out for speed. Truths read everything at level 0.
@@ -227,6 +232,11 @@ fn profile_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
     note_clear(index, p.xz, h, reading);
     return 0.0;
   }
+  return formed_at(layer, p, h, profile, weather, reading);
+}
+
+// What billows and erosion make of a profile.
+fn formed_at(layer: LayerUniforms, p: vec3f, h: f32, profile: f32, weather: Weather, reading: Reading) -> f32 {
   clear_way = 0.0;
   count_read();
   let tile = noise_place(layer, p, h) * layer.shape_from_world.w + layer.shape_from_world.xyz;
@@ -249,6 +259,27 @@ fn profile_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
     clearness = min(clearness, max(-0.35 * field, 0.0));
   }
   return profile_density(field, firm, layer, h);
+}
+#endif
+
+#if AUTOMATON
+fn automaton_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
+  let weather = weather_at(layer, p.xz, h);
+  if (weather.body <= 0.0) {
+    note_clear(index, p.xz, h, reading);
+    return 0.0;
+  }
+  count_read();
+  // Neither end runs over into the other.
+  let margin = 0.5 / f32(textureDimensions(automaton_cells).y);
+  let place = vec3f(map_uv(layer, p.xz, h), clamp(h, margin, 1.0 - margin)).xzy;
+  let cells = textureSampleLevel(automaton_cells, linear_repeat, place, 0.0);
+  let profile = automaton_profile(dot(cells, scene.automaton_shares), weather, layer, h);
+  if (profile_bound(profile, layer) <= 0.0) {
+    note_clear(index, p.xz, h, reading);
+    return 0.0;
+  }
+  return formed_at(layer, p, h, profile, weather, reading);
 }
 #endif
 
@@ -414,6 +445,11 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
     density = product_at(index, layer, p, h, reading);
   }
 #endif
+#if AUTOMATON
+  if (layer.model == MODEL_AUTOMATON) {
+    density = automaton_at(index, layer, p, h, reading);
+  }
+#endif
 #if UNIFORM
   if (layer.model == MODEL_UNIFORM) {
     density = weather_at(layer, p.xz, h).body;
@@ -450,7 +486,7 @@ fn extinction_of(densities: vec4f) -> f32 {
 // Never below the density of a layer anywhere in a cell of the map, whose greatest body is given: the only majorant.
 fn density_bound(layer: LayerUniforms, greatest_body: f32) -> f32 {
   var bound = greatest_body;
-  if (layer.model == MODEL_PROFILE) {
+  if (layer.model == MODEL_PROFILE || layer.model == MODEL_AUTOMATON) {
     bound = profile_bound(greatest_body, layer);
   }
   if (layer.model == MODEL_THESIS) {
@@ -493,56 +529,8 @@ fn density_bound_between(
   if (layer.model == MODEL_PRODUCT) {
     bound = product_bound(body, layer);
   }
+  if (layer.model == MODEL_AUTOMATON) {
+    bound = profile_bound(body * smoothstep(0.0, layer.base_ramp, highest), layer);
+  }
   return bound * layer.density_scale;
-}
-
-// Extinction of all layers at a place towards the key light, in 1/m.
-fn shadow_extinction(p: vec3f, reading: Reading) -> f32 {
-  let densities = densities_at(p, reading);
-  var extinction = 0.0;
-  for (var i = 0u; i < LAYERS; i++) {
-    extinction += densities[i] * scene.layers[i].extinction_per_m * scene.layers[i].shadow_extinction_scale;
-  }
-  return extinction;
-}
-
-// Steps towards the light that grow geometrically and together cover a way: the first one, and the growth. From the
-// first to beyond the last they grow by 1 + spread times the way: long ways need long steps far off, and short ones near.
-fn light_steps_over(way: f32, count: u32, spread_per_m: f32) -> vec2f {
-  let spread = way * spread_per_m;
-  let growth = pow(1.0 + spread, 1.0 / f32(count));
-  return vec2f(select(way * (growth - 1.0) / spread, way / f32(count), spread < 1e-2), select(growth, 1.0, spread < 1e-2));
-}
-
-// How much longer a step towards the light becomes for each unit of optical depth that the one before it found: behind
-// much cloud a step matters less. Equal steps stay equal.
-const LIGHT_GROWTH_BY_DEPTH: f32 = 0.1;
-// Most of it that counts.
-const LIGHT_DEPTH_THAT_COUNTS: f32 = 4.0;
-
-// Optical depth from a place towards the key light: the only way to ask for the sun's visibility through cloud.
-// Steps have each its own length (errata 6) and are sampled in their middle; they cover the reach, or the way out of the
-// domain where that is shorter.
-fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
-  let way = min(domain_exit(p, scene.towards_light), scene.light_reach_m);
-  let steps = light_steps_over(way, scene.light_steps, scene.light_spread_per_m);
-  let by_depth = select(0.0, LIGHT_GROWTH_BY_DEPTH, steps.y > 1.0);
-  var step = steps.x;
-  var t = 0.0;
-  var depth = 0.0;
-  for (var i = 0u; i < scene.light_steps; i++) {
-    let q = p + scene.towards_light * (t + 0.5 * step);
-    let own = shadow_extinction(q, Reading(level, i < scene.light_detail_steps, 0.0, false)) * step;
-#if COUNT
-    counted_light_steps += 1u;
-#endif
-    depth += own;
-    t += step;
-    // Beyond this depth not even the widest octave passes anything.
-    if (depth > 600.0 || t >= way) {
-      break;
-    }
-    step = min(step * steps.y * (1.0 + by_depth * min(own, LIGHT_DEPTH_THAT_COUNTS)), way - t);
-  }
-  return depth;
 }

@@ -3,7 +3,7 @@
 #import "cloud/phase.wgsl"
 #import "cloud/scatter.wgsl"
 #import "light/sky.wgsl"
-#import "pass/cloud_field.wgsl"
+#import "pass/sun_depth.wgsl"
 
 override OCTAVES: u32 = 1u;
 

@@ -2,7 +2,7 @@
 // downwards in green.
 #import "generated/BandUniforms.wgsl"
 #import "generated/GroundUniforms.wgsl"
-#import "pass/cloud_field.wgsl"
+#import "pass/sun_depth.wgsl"
 
 @group(0) @binding(0) var<uniform> band: BandUniforms;
 @group(0) @binding(1) var<uniform> ground: GroundUniforms;

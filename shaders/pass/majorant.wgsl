@@ -1,6 +1,9 @@
 // Local majorants of the density field, from the greatest body of cells of the weather map and the heights within reach:
 // what delta tracking steps by (Woodcock et al. 1965; Kutz et al., "Spectral and Decomposition Tracking for Rendering
 // Heterogeneous Volumes", 2017).
+#if AUTOMATON
+#import "pass/automaton_greatest.wgsl"
+#endif
 #import "cloud/voxels.wgsl"
 #import "pass/cloud_field.wgsl"
 
@@ -103,8 +106,9 @@ fn greatest_field(uv: vec2f, level: u32) -> f32 {
 fn majorant_of(p: vec3f, altitude: f32, level: u32) -> Majorant {
   var reach = FAR_M;
   for (var i = 0u; i < LAYERS; i++) {
-    // The layer's own reach is that of 64 cells.
-    reach = min(reach, scene.layers[i].lean.z * 2.0 / f32(1u << level));
+    // The layer's own reach is that of 64 cells, and no other is known of an automaton.
+    let cells = select(level, max(level, 1u), scene.layers[i].model == MODEL_AUTOMATON);
+    reach = min(reach, scene.layers[i].lean.z * 2.0 / f32(1u << cells));
   }
   var extinction = 0.0;
   for (var i = 0u; i < LAYERS; i++) {
@@ -114,7 +118,12 @@ fn majorant_of(p: vec3f, altitude: f32, level: u32) -> Majorant {
     if (low < 1.0 && high > 0.0 && layer.model != MODEL_GRID) {
       let uv = map_uv(layer, p.xz, clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0));
       let on_map = select(clamp(uv, vec2f(0.0), vec2f(1.0)), uv - floor(uv), scene.map_edge == EDGE_REPEAT);
-      let body = greatest_body(layer, greatest_field(on_map, level));
+      var body = greatest_body(layer, greatest_field(on_map, level));
+#if AUTOMATON
+      if (layer.model == MODEL_AUTOMATON) {
+        body *= greatest_of_automaton(uv, low, high);
+      }
+#endif
       extinction += density_bound_between(layer, body, ANY_TYPES, low, high) * layer.extinction_per_m;
     }
   }

@@ -108,6 +108,14 @@ effects! {
     Product ("Perlin × Voronoi model", "Clouds of Thomann's two noises.") {
         flags: ["PRODUCT"], bindings: ["octave_noise"], passes: ["bake_octave"]
     }
+    Automaton ("cellular automaton", "Clouds that appear, merge and vanish by rules between neighbours.") {
+        flags: ["AUTOMATON"],
+        bindings: ["automaton_cells", "automaton_bound"],
+        passes: ["automaton_favour", "automaton_advance", "automaton_smooth", "automaton_bound"]
+    }
+    Shear ("wind shear", "Cells of the automaton that the wind carries on, the higher the farther.") {
+        flags: [], bindings: [], passes: ["automaton_drift"]
+    }
     ShapeNoise ("large noise", "Billows of the profile model and of the weather texture.") {
         flags: [], bindings: ["shape_noise"], passes: ["bake_shape"], essential: true
     }

@@ -53,6 +53,8 @@ pub struct MarchVariant {
     pub texture: bool,
     /// Some layer is Perlin times Voronoi noise, summed from octaves.
     pub product: bool,
+    /// Some layer is a cellular automaton.
+    pub automaton: bool,
     /// Some layer is the voxels of a file.
     pub grid: bool,
     /// All layers are read from voxels that were baked before, so many from west to east.
@@ -87,8 +89,20 @@ pub struct MarchVariant {
 
 impl MarchVariant {
     /// Every flag of the density field.
-    const FIELD_FLAGS: [&'static str; 11] =
-        ["PROFILE", "THESIS", "UNIFORM", "TEXTURE", "PRODUCT", "GRID", "BAKED", "MAPLESS", "DETAIL", "CURL", "FRONT"];
+    const FIELD_FLAGS: [&'static str; 12] = [
+        "PROFILE",
+        "THESIS",
+        "UNIFORM",
+        "TEXTURE",
+        "PRODUCT",
+        "AUTOMATON",
+        "GRID",
+        "BAKED",
+        "MAPLESS",
+        "DETAIL",
+        "CURL",
+        "FRONT",
+    ];
 
     /// The variant that reads a frame's layers, or `None` where none can hold cloud. What only light and the march itself
     /// need is left out of it until [`Self::marched`].
@@ -100,14 +114,29 @@ impl MarchVariant {
         }
         let any = |test: fn(&CloudLayer) -> bool| layers.iter().any(|layer| test(layer));
         let has = |model: DensityModel| layers.iter().any(|layer| layer.model == model);
+        let profile = why.needed_if(
+            has(DensityModel::Profile) || has(DensityModel::Automaton),
+            Effect::Profile,
+            "some layer has it, or takes its billows",
+            "no layer has it",
+        );
         let mut model = |effect: Effect, which: DensityModel| {
             why.needed_if(has(which), effect, "some layer has it", "no layer has it")
         };
-        let profile = model(Effect::Profile, DensityModel::Profile);
         let thesis = model(Effect::Thesis, DensityModel::Thesis);
         let uniform = model(Effect::Uniform, DensityModel::Uniform);
         let texture = model(Effect::Texture, DensityModel::Texture);
         let product = model(Effect::Product, DensityModel::Product);
+        let automaton = model(Effect::Automaton, DensityModel::Automaton);
+        let is_sheared = |l: &CloudLayer| l.model == DensityModel::Automaton && l.automaton.shear != 0.0;
+        why.unless(
+            Effect::Shear,
+            &[
+                (!automaton, Need::Impossible, "no layer is an automaton"),
+                (!layers.iter().any(|layer| is_sheared(layer)), Need::Needless, "its shear is 0"),
+            ],
+            "its tops drift from its bases",
+        );
         let grid = has(DensityModel::Grid);
         why.unless(Effect::Grid, &[(!grid, Need::Impossible, "no layer names a file")], "some layer has it");
         why.unless(
@@ -117,7 +146,7 @@ impl MarchVariant {
         );
         let has_heights = scene.weather.layers.iter().any(|map| map.source != MapSource::Generated);
         let baked = baked(frame, why);
-        let reads_map = any(CloudLayer::reads_map) || profile || thesis || uniform || texture || product;
+        let reads_map = any(CloudLayer::reads_map) || profile || thesis || uniform || texture || product || automaton;
         let of_map = if texture && !has_heights {
             "it holds no heights for the weather texture: set its source to a weather texture or an image"
         } else {
@@ -156,6 +185,7 @@ impl MarchVariant {
             uniform,
             texture,
             product,
+            automaton,
             grid,
             baked,
             mapless: !reads_map,
@@ -289,6 +319,7 @@ impl MarchVariant {
             uniform: false,
             texture: false,
             product: false,
+            automaton: false,
             grid: true,
             mapless: true,
             detail: false,
@@ -328,6 +359,7 @@ impl MarchVariant {
             seen.uniform,
             seen.texture,
             seen.product,
+            seen.automaton,
             seen.grid,
             seen.baked.is_some(),
             seen.mapless,

@@ -1,5 +1,6 @@
 //! How far it is to cloud from every place over the weather map: what rays cross clear air by.
 
+use super::automaton::Living;
 use super::context::{Bound, Context, Extent};
 use super::passes::{field_key, view_of};
 use super::uniforms::field_uniforms;
@@ -17,6 +18,8 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 #[derive(Clone, Debug, PartialEq)]
 struct From {
     map: u64,
+    /// Which of the automaton's densities.
+    living: u64,
     layers: [LayerUniforms; MAX_LAYERS],
     march: [ProgramKey; 2],
 }
@@ -33,7 +36,7 @@ impl Clearance {
         &mut self,
         context: &Context<'_>,
         (frame, march): (&Frame<'_>, MarchVariant),
-        weather: &WeatherMap,
+        (weather, living): (&WeatherMap, &Living),
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
         let Some(map) = weather.map().filter(|_| march.skip) else {
@@ -41,15 +44,24 @@ impl Clearance {
             return Ok(());
         };
         let field = field_uniforms(frame);
-        let from = From { map: weather.count(), layers: field.layers.map(in_place), march: keys(march) };
+        let from = From {
+            map: weather.count(),
+            living: if march.automaton { living.count() } else { 0 },
+            layers: field.layers.map(in_place),
+            march: keys(march),
+        };
         if self.made.as_ref().is_some_and(|(made, _)| *made == from) {
             return Ok(());
         }
         let scene = context.gpu.uniform("scene", bytemuck::bytes_of(&field));
         let [there, back] = [(); 2].map(|()| Texture::new_3d(context.gpu, "clear_ways", CELLS, (1, FORMAT)));
         let [cells, spread] = &from.march;
-        let bound =
-            vec![("scene", scene.as_entire_binding()), ("weather_map", view_of(map)), ("ways_out", view_of(&there))];
+        let mut bound = living.resources();
+        bound.extend([
+            ("scene", scene.as_entire_binding()),
+            ("weather_map", view_of(map)),
+            ("ways_out", view_of(&there)),
+        ]);
         jobs.push(context.whole("clear_cells", cells, &bound, Extent::image([CELLS[0], CELLS[2]]))?);
         for (axis, before, after) in [(0, &there, &back), (1, &back, &there), (2, &there, &back)] {
             let bound = vec![

@@ -4,6 +4,7 @@
 //! `schedule`; then it is run at once ([`Renderer::render`]) or in slices beside a window ([`Renderer::begin`] and
 //! [`Renderer::advance`]).
 
+mod automaton;
 mod bakes;
 mod blue_noise;
 mod clearance;
@@ -34,6 +35,7 @@ use crate::gpu::{Gpu, GpuError, Job, PassTime, ProgramCache, ProgramKey, Texture
 use crate::plan::{Forced, FramePlan, HistoryKey, SkyPlan};
 use crate::scene::Frame;
 
+use automaton::Living;
 use bakes::Bakes;
 use clearance::Clearance;
 use context::Pace;
@@ -55,6 +57,7 @@ pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
     sky.into_iter()
         .chain(bakes::programs(plan))
         .chain(voxels::programs(plan))
+        .chain(automaton::programs(plan))
         .chain(clearance::programs(plan))
         .chain(passes::programs(plan, true))
         .collect()
@@ -144,6 +147,7 @@ pub struct Renderer {
     weather: WeatherMap,
     clearance: Clearance,
     voxels: Voxels,
+    living: Living,
     targets: Option<Targets>,
     history: Option<History>,
     /// The last finished picture.
@@ -180,6 +184,7 @@ impl Renderer {
             weather: WeatherMap::new(),
             clearance: Clearance::default(),
             voxels: Voxels::default(),
+            living: Living::default(),
             targets: None,
             history: None,
             shown: None,
@@ -270,7 +275,8 @@ impl Renderer {
         self.finish_interactive()?;
         (self.sky, self.targets, self.history, self.shown, self.last_plan) = (None, None, None, None, None);
         self.bakes = Bakes::new(&self.gpu)?;
-        (self.weather, self.clearance, self.voxels) = (WeatherMap::new(), Clearance::default(), Voxels::default());
+        (self.weather, self.clearance) = (WeatherMap::new(), Clearance::default());
+        (self.voxels, self.living) = (Voxels::default(), Living::default());
         Ok(())
     }
 
@@ -291,6 +297,7 @@ impl Renderer {
             + self.weather.bytes()
             + self.clearance.bytes()
             + self.voxels.bytes()
+            + self.living.bytes()
             + self.sky.as_ref().map_or(0, SkyTables::bytes)
             + targets
     }

@@ -138,6 +138,7 @@ impl Renderer {
             None => self.sky = None,
         }
         self.bakes.update(&context, plan, scene.ground.seed, jobs)?;
+        self.living.update(&context, (frame, plan), jobs)?;
         match plan.march.filter(|march| !march.mapless) {
             Some(march) => {
                 self.weather.update(&context, &scene.weather, frame.time_secs, jobs)?;
@@ -145,7 +146,7 @@ impl Renderer {
                 self.weather.update_bounds(&context, tracks, jobs)?;
                 // Shadows alone need no clear ways; a view that turns back does.
                 if march.skip || plan.has_clouds() {
-                    self.clearance.update(&context, (frame, march), &self.weather, jobs)?;
+                    self.clearance.update(&context, (frame, march), (&self.weather, &self.living), jobs)?;
                 }
             }
             None if plan.march.is_none() && plan.holds_clouds => {}
@@ -156,7 +157,9 @@ impl Renderer {
         }
         let mut read_by_bake = self.bakes.resources();
         read_by_bake.extend(self.weather.resources());
-        self.voxels.update(&context, (frame, plan), (&read_by_bake, self.weather.count()), jobs)?;
+        read_by_bake.extend(self.living.resources());
+        let counts = [self.weather.count(), self.living.count()];
+        self.voxels.update(&context, (frame, plan), (&read_by_bake, counts), jobs)?;
         Ok(())
     }
 
@@ -165,6 +168,7 @@ impl Renderer {
         let mut shared = self.bakes.resources();
         shared.extend(self.sky.iter().flat_map(SkyTables::resources));
         shared.extend(self.weather.resources());
+        shared.extend(self.living.resources());
         shared.extend(self.clearance.resources());
         shared.extend(self.voxels.resources());
         shared

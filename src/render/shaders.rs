@@ -2,8 +2,8 @@
 
 use super::uniforms::air::AirUniforms;
 use super::uniforms::other::{
-    BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, PlainUniforms, ReliefUniforms, ShaftUniforms,
-    TruthUniforms,
+    AutomatonUniforms, BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, PlainUniforms, ReliefUniforms,
+    ShaftUniforms, TruthUniforms,
 };
 use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
 use crate::gpu::ShaderTable;
@@ -14,6 +14,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         "AIR",
         "ALONE",
         "AMBIENT",
+        "AUTOMATON",
         "BAKED",
         "BELOW",
         "CLOUDS",
@@ -27,6 +28,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         "GRADED",
         "GRID",
         "GROUND",
+        "HANDOVER",
         "HISTORY",
         "LIT",
         "MAPLESS",
@@ -57,6 +59,7 @@ pub const TABLE: ShaderTable = ShaderTable {
     ],
     structs: &[
         AirUniforms::GENERATED,
+        AutomatonUniforms::GENERATED,
         BandUniforms::GENERATED,
         BlendUniforms::GENERATED,
         CameraUniforms::GENERATED,

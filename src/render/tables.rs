@@ -18,6 +18,8 @@ choices! {
         WorleyNoise ("worley-noise"),
         /// One octave of Perlin (red, blue) and Voronoi noise (green, alpha), slice by slice, of the model of their product.
         OctaveNoise ("octave-noise"),
+        /// Density of the automaton's cells, in slices from north to south: of this generation, of the next, and of the run before.
+        Automaton ("automaton"),
         /// The small noise, in slices.
         DetailNoise ("detail-noise"),
         /// The noise that stirs the small one.
@@ -62,6 +64,7 @@ impl Renderer {
             TableKind::ShapeNoise => baked("bake_shape"),
             TableKind::WorleyNoise => baked("bake_worley"),
             TableKind::OctaveNoise => baked("bake_octave"),
+            TableKind::Automaton => self.living.textures().next().map(|(_, texture)| texture),
             TableKind::DetailNoise => baked("bake_detail"),
             TableKind::CurlNoise => baked("bake_curl"),
             TableKind::Relief => baked("bake_terrain"),

@@ -44,8 +44,8 @@ struct Made<K> {
 #[derive(Debug, PartialEq)]
 struct BakedFrom {
     field: SceneUniforms,
-    /// Which of the weather maps it was, by their count.
-    map: u64,
+    /// Which of the weather maps and of the automaton's densities it was, by their counts.
+    counts: [u64; 2],
     file: Option<FileState>,
     variant: MarchVariant,
 }
@@ -67,19 +67,19 @@ impl Voxels {
     }
 
     /// Bakes the layers that the plan calls for, as far as they are not there; lets go of the others.
-    /// A bake reads `inputs`: noises and weather map, of which it is the one of this count.
+    /// A bake reads `inputs`: noises, weather map and automaton, of which they are the ones of these counts.
     pub(super) fn update(
         &mut self,
         context: &Context<'_>,
         (frame, plan): (&Frame<'_>, &FramePlan),
-        (inputs, map): (&Bound<'_>, u64),
+        (inputs, counts): (&Bound<'_>, [u64; 2]),
         jobs: &mut Vec<Job>,
     ) -> Result<(), RenderError> {
         let Some(march) = plan.march else {
             self.baked = self.baked.take().filter(|_| plan.holds_clouds);
             return Ok(());
         };
-        self.update_baked(context, (frame, march), (inputs, map), jobs)?;
+        self.update_baked(context, (frame, march), (inputs, counts), jobs)?;
         let tracked = march.baked.is_none();
         if let Some(file) = &mut self.file {
             file.update_bound(context, plan.tracks && tracked, jobs)?;
@@ -116,7 +116,7 @@ impl Voxels {
         &mut self,
         context: &Context<'_>,
         (frame, march): (&Frame<'_>, MarchVariant),
-        (inputs, map): (&Bound<'_>, u64),
+        (inputs, counts): (&Bound<'_>, [u64; 2]),
         jobs: &mut Vec<Job>,
     ) -> Result<(), RenderError> {
         let Some(across) = march.baked else {
@@ -125,7 +125,7 @@ impl Voxels {
         };
         let from = BakedFrom {
             field: field_uniforms(frame),
-            map,
+            counts,
             file: self.file.as_ref().map(|file| file.from.clone()),
             variant: march.field_alone(),
         };

@@ -76,6 +76,7 @@ impl Renderer {
         all.extend(self.bakes.textures());
         all.extend(self.weather.map().map(|map| ("weather_map", map)));
         all.extend(self.voxels.textures());
+        all.extend(self.living.textures());
         all.extend(self.clearance.texture().map(|ways| ("clear_spread", ways)));
         let Some(targets) = &self.targets else { return all };
         all.extend(targets.cloud_shadow.iter().map(|texture| ("cloud_shadow", texture)));

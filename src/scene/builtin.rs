@@ -63,6 +63,8 @@ pub const BUILTINS: &[Builtin] = builtins![
     "box_sunset",
     "box_clear",
     "box_stormy",
+    "living_cumulus",
+    "living_evening",
 ];
 
 /// The built-in preset of that name.

@@ -524,7 +524,7 @@ mod tests {
             (
                 "layers.0.model",
                 "thesis",
-                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform, Texture, Grid, Product",
+                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform, Texture, Grid, Product, Automaton",
             ),
             ("layers.3.base_m", "1", "layers: the list has 1 item(s), so the index may be at most 1"),
             (

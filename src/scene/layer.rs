@@ -1,5 +1,6 @@
 //! Cloud layers: where they are, what shapes them, and what they do to light.
 
+use super::automaton::Automaton;
 use super::param::FileName;
 use crate::{choices, params};
 
@@ -18,6 +19,8 @@ choices! {
         Grid ("Voxel grid"),
         /// Octaves of Perlin noise times octaves of Voronoi noise, in a box or wherever the map has cloud (Thomann 2020, section 6.3).
         Product ("Perlin × Voronoi"),
+        /// Clouds that live: cells that become humid, condense and vanish, with the billows of the program's own model (Dobashi et al. 2000).
+        Automaton ("Cellular automaton"),
     }
 }
 
@@ -166,6 +169,8 @@ params! {
         perlin: PerlinOctaves = PerlinOctaves::default();
         /// Octaves of Voronoi noise, for that model only.
         voronoi: VoronoiOctaves = VoronoiOctaves::default();
+        /// The cellular automaton, for that model only.
+        automaton: Automaton = Automaton::default();
         /// Artists' multiplier of the density.
         density: f32 = 1.0, 0.0..=10.0, None;
         /// Steepness of the step from clear air to full density.

@@ -5,6 +5,7 @@
 //! [`crate::render::uniforms`] on.
 
 mod animation;
+mod automaton;
 pub mod bounds;
 pub mod builtin;
 pub mod clip;
@@ -27,6 +28,7 @@ mod sun_position;
 mod weather;
 
 pub use animation::{Animation, DURATION_RANGE_SECS, Ease, Keyframe, SPEED_RANGE, Track, can_move};
+pub use automaton::{Automaton, AutomatonMoment, CHAPTER, EPOCH, Generation, HAND_OVER, WARM_UP};
 pub use cube::{CUBE_FACES, CubeFace};
 pub use frame::{Frame, LARGEST_WHOLE_PX, Output, Window};
 pub use layer::{BodyForm, CloudLayer, DensityModel, Optics, PerlinOctaves, Phase, PhaseKind, VoronoiOctaves};
@@ -100,6 +102,10 @@ impl Scene {
         if let Some((index, _)) = grids.next() {
             problems.push(format!("layers.{index}.model is Grid, but only one layer can be a voxel grid"));
         }
+        let mut living = self.layers.iter().enumerate().filter(|(_, layer)| layer.model == DensityModel::Automaton);
+        if let Some((index, _)) = living.by_ref().nth(1) {
+            problems.push(format!("layers.{index}.model is Automaton, but only one layer can be an automaton"));
+        }
         for (index, layer) in self.layers.iter().enumerate() {
             if layer.top_m < layer.base_m {
                 problems.push(format!(
@@ -118,14 +124,19 @@ impl Scene {
         for layer in &mut self.layers {
             layer.top_m = layer.top_m.max(layer.base_m);
         }
-        self.give_grids_a_box();
+        self.keep_models_apart();
     }
 
-    /// Changes as little as makes the rules of voxel grids hold: a box, and no second one.
-    pub fn give_grids_a_box(&mut self) {
-        let mut has_grid = false;
+    /// Changes as little as makes the rules of models hold: voxel grids in a box, and no second grid or automaton.
+    pub fn keep_models_apart(&mut self) {
+        let (mut has_grid, mut has_automaton) = (false, false);
         for layer in &mut self.layers {
-            if layer.model == DensityModel::Grid && std::mem::replace(&mut has_grid, true) {
+            let is_second = match layer.model {
+                DensityModel::Grid => std::mem::replace(&mut has_grid, true),
+                DensityModel::Automaton => std::mem::replace(&mut has_automaton, true),
+                _ => false,
+            };
+            if is_second {
                 layer.model = CloudLayer::default().model;
             }
         }

@@ -9,6 +9,7 @@ macro_rules! files {
 }
 
 files! {
+    "cloud/automaton.wgsl",
     "cloud/bound.wgsl",
     "cloud/costa.wgsl",
     "cloud/map_field.wgsl",
@@ -35,6 +36,12 @@ files! {
     "noise/fractal.wgsl",
     "noise/perlin.wgsl",
     "noise/worley.wgsl",
+    "pass/automaton_advance.wgsl",
+    "pass/automaton_bound.wgsl",
+    "pass/automaton_drift.wgsl",
+    "pass/automaton_favour.wgsl",
+    "pass/automaton_greatest.wgsl",
+    "pass/automaton_smooth.wgsl",
     "pass/background.wgsl",
     "pass/background_plain.wgsl",
     "pass/bake_curl.wgsl",
@@ -69,6 +76,7 @@ files! {
     "pass/sky_multiscatter.wgsl",
     "pass/sky_transmittance.wgsl",
     "pass/sky_view.wgsl",
+    "pass/sun_depth.wgsl",
     "pass/temporal.wgsl",
     "pass/terrain.wgsl",
     "pass/tonemap.wgsl",

@@ -114,6 +114,13 @@ fn texture(s: &mut Setup) {
     s.scene.weather.layers.iter_mut().for_each(|map| map.source = MapSource::WeatherTexture);
 }
 
+fn living(s: &mut Setup) {
+    let layer = s.scene.layers.first_mut().expect("there is one");
+    layer.model = DensityModel::Automaton;
+    (layer.automaton.cells, layer.automaton.levels, layer.automaton.coverage) = (32, 12, 0.7);
+    s.scene.weather.coverage = 1.0;
+}
+
 fn boxed(s: &mut Setup) {
     s.scene.domain.kind = DomainKind::Box;
     s.quality.grid_voxels = 32;
@@ -231,6 +238,14 @@ fn scenes(effect: Effect) -> Example {
             &[base],
             true,
         ),
+        Effect::Automaton => example(living, base, &[base], true),
+        Effect::Shear => {
+            const ON: Change = |s| {
+                living(s);
+                s.all_layers(|layer| layer.automaton.shear = 1.0);
+            };
+            example(ON, living, &[living], true)
+        }
         Effect::ShapeNoise => example(base, |s| s.all_layers(|layer| layer.model = DensityModel::Thesis), &[], false),
         Effect::Grid => example(
             |s| {

@@ -63,7 +63,7 @@ fn body(layer: &CloudLayer, coverage: f32) -> (f32, f32) {
     match layer.model {
         DensityModel::Thesis | DensityModel::Texture if coverage > 0.0 => (1.0 / coverage, 1.0 - 1.0 / coverage),
         DensityModel::Thesis | DensityModel::Texture | DensityModel::Grid => (0.0, 0.0),
-        DensityModel::Profile | DensityModel::Uniform | DensityModel::Product => {
+        DensityModel::Profile | DensityModel::Uniform | DensityModel::Product | DensityModel::Automaton => {
             let softness = layer.edge_softness;
             (1.0 / softness, -(1.0 - coverage * (1.0 + softness)) / softness)
         }
@@ -109,6 +109,7 @@ fn model_index(model: DensityModel) -> u32 {
         DensityModel::Texture => 3,
         DensityModel::Grid => 4,
         DensityModel::Product => 5,
+        DensityModel::Automaton => 6,
     }
 }
 
@@ -212,6 +213,12 @@ fn front(scene: &Scene, eye: &Eye, time_secs: f64) -> Vec4 {
     Vec4::new(upwind.x as f32, upwind.y as f32, 1.0 / scene.weather.front_width_m, distance as f32)
 }
 
+/// Shares of the automaton's generations.
+fn automaton_shares(layers: &[&CloudLayer], time_secs: f64) -> Vec4 {
+    let living = layers.iter().find(|layer| layer.model == DensityModel::Automaton);
+    living.map_or(Vec4::ZERO, |layer| Vec4::from_array(layer.automaton.at(time_secs).shares))
+}
+
 /// Way through the clouds, in metres, up to which the steps towards the light are as many as the quality says.
 const USUAL_WAY_M: f32 = 3000.0;
 /// How many times as many there are for the longest ways.
@@ -298,6 +305,7 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
             MapEdge::Clear => 2,
         },
         front: front(scene, eye, frame.time_secs),
+        automaton_shares: automaton_shares(&visible, frame.time_secs),
         octave_extinction: light.octave_extinction,
         octave_energy: light.octave_energy,
         octave_anisotropy: light.octave_anisotropy,

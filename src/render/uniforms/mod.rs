@@ -8,6 +8,7 @@ pub mod air;
 mod camera;
 mod clouds;
 mod ground;
+mod living;
 pub mod other;
 pub mod scene;
 
@@ -15,6 +16,7 @@ pub(super) use camera::{Eye, camera_uniforms};
 pub(crate) use clouds::wind_mps;
 pub(super) use clouds::{field_uniforms, plain_sky, scene_uniforms};
 pub(super) use ground::ground_uniforms;
+pub use living::automaton_uniforms;
 
 use super::pass::sky::{SkyInputs, SkyParts};
 use crate::plan::{Lighting, SkyPlan};

@@ -1,6 +1,6 @@
 //! The structs of the smaller passes.
 
-use glam::{Vec2, Vec3, Vec4};
+use glam::{IVec2, Vec2, Vec3, Vec4};
 
 use crate::gpu_struct;
 
@@ -69,6 +69,40 @@ gpu_struct! {
         pub pad1: f32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad2: f32,
+    }
+
+    /// A generation of the cellular automaton. Chances are parts of 65536.
+    pub struct AutomatonUniforms {
+        /// How far the wind carries the tops on in a generation, in 65536ths of a cell: east and south.
+        pub shear: IVec2,
+        /// Cells across the map.
+        pub cells: u32,
+        /// Cells from base to top.
+        pub levels: u32,
+        /// Seed of the favourable air.
+        pub seed: u32,
+        /// Places across the map where air rises.
+        pub patches: u32,
+        /// Where on the noise's second axis, in 4096ths of a patch.
+        pub phase: u32,
+        /// Below this the noise has no favourable air at the base.
+        pub threshold: i32,
+        /// 256ths of reserve for what the noise has beyond it.
+        pub gain: i32,
+        /// 256ths of reserve that the whole height costs.
+        pub slope: i32,
+        /// Chance to become humid.
+        pub vapour: u32,
+        /// Chance to condense by itself.
+        pub activation: u32,
+        /// Chance to vanish in favourable air.
+        pub extinction: u32,
+        /// Chance to vanish elsewhere.
+        pub dissolution: u32,
+        /// Which generation of the run this becomes.
+        pub index: u32,
+        /// Random bits of the run.
+        pub run: u32,
     }
 
     /// How two states of a map join.

@@ -187,6 +187,8 @@ gpu_struct! {
         pub map_edge: u32,
         /// Unit vector upwind in xy, 1 over the width in z, distance of the front in w.
         pub front: Vec4,
+        /// Shares of the generations in the automaton's channels.
+        pub automaton_shares: Vec4,
         /// Extinction of an octave relative to the one before.
         pub octave_extinction: f32,
         /// Energy of an octave relative to the one before.

@@ -1,0 +1,53 @@
+// How much cloud lies towards the key light.
+#import "pass/cloud_field.wgsl"
+
+// Extinction of all layers at a place towards the key light, in 1/m.
+fn shadow_extinction(p: vec3f, reading: Reading) -> f32 {
+  let densities = densities_at(p, reading);
+  var extinction = 0.0;
+  for (var i = 0u; i < LAYERS; i++) {
+    extinction += densities[i] * scene.layers[i].extinction_per_m * scene.layers[i].shadow_extinction_scale;
+  }
+  return extinction;
+}
+
+// Steps towards the light that grow geometrically and together cover a way: the first one, and the growth. From the
+// first to beyond the last they grow by 1 + spread times the way: long ways need long steps far off, and short ones near.
+fn light_steps_over(way: f32, count: u32, spread_per_m: f32) -> vec2f {
+  let spread = way * spread_per_m;
+  let growth = pow(1.0 + spread, 1.0 / f32(count));
+  return vec2f(select(way * (growth - 1.0) / spread, way / f32(count), spread < 1e-2), select(growth, 1.0, spread < 1e-2));
+}
+
+// How much longer a step towards the light becomes for each unit of optical depth that the one before it found: behind
+// much cloud a step matters less. Equal steps stay equal.
+const LIGHT_GROWTH_BY_DEPTH: f32 = 0.1;
+// Most of it that counts.
+const LIGHT_DEPTH_THAT_COUNTS: f32 = 4.0;
+
+// Optical depth from a place towards the key light: the only way to ask for the sun's visibility through cloud.
+// Steps have each its own length (errata 6) and are sampled in their middle; they cover the reach, or the way out of the
+// domain where that is shorter.
+fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
+  let way = min(domain_exit(p, scene.towards_light), scene.light_reach_m);
+  let steps = light_steps_over(way, scene.light_steps, scene.light_spread_per_m);
+  let by_depth = select(0.0, LIGHT_GROWTH_BY_DEPTH, steps.y > 1.0);
+  var step = steps.x;
+  var t = 0.0;
+  var depth = 0.0;
+  for (var i = 0u; i < scene.light_steps; i++) {
+    let q = p + scene.towards_light * (t + 0.5 * step);
+    let own = shadow_extinction(q, Reading(level, i < scene.light_detail_steps, 0.0, false)) * step;
+#if COUNT
+    counted_light_steps += 1u;
+#endif
+    depth += own;
+    t += step;
+    // Beyond this depth not even the widest octave passes anything.
+    if (depth > 600.0 || t >= way) {
+      break;
+    }
+    step = min(step * steps.y * (1.0 + by_depth * min(own, LIGHT_DEPTH_THAT_COUNTS)), way - t);
+  }
+  return depth;
+}
