@@ -20,6 +20,7 @@ mod gpu {
     mod random;
     mod rows;
     mod shaders;
+    mod shapes;
     mod shell;
     mod stills;
     mod temporal;

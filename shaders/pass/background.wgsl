@@ -10,6 +10,9 @@
 #if GROUND
 #import "pass/terrain.wgsl"
 #endif
+#if SOLIDS
+#import "pass/solids.wgsl"
+#endif
 
 @group(0) @binding(0) var<uniform> view: ViewUniforms;
 @group(0) @binding(1) var<uniform> band: BandUniforms;
@@ -176,9 +179,57 @@ fn light_through_cloud(p: vec3f) -> vec2f {
   let foot = p - ground.towards_light * (p.y / max(ground.towards_light.y, 0.05));
   let uv = foot.xz * ground.shadow_from_world.z + ground.shadow_from_world.xy;
   let edge = clamp((0.5 - max(abs(uv.x - 0.5), abs(uv.y - 0.5))) * 8.0, 0.0, 1.0);
-  let mapped = textureSampleLevel(cloud_shadow, linear_clamp, uv, 0.0).xy;
+  let texel = textureSampleLevel(cloud_shadow, linear_clamp, uv, 0.0);
+  var mapped = texel.xy;
+#if SOLIDS
+  // Solid things stand above some of the clouds.
+  let raised = clamp(altitude_at(p, ground.planet_radius_m) / max(ground.receiver_m, 1.0), 0.0, 1.0);
+  mapped = mix(mapped, vec2f(texel.z, 0.0), raised);
+#endif
   let beyond = vec2f(ground.mean_shadow, 0.4 * (1.0 - ground.mean_shadow));
   return mix(vec2f(1.0, 0.0), mix(beyond, mapped, edge), ground.shadow_strength);
+}
+#endif
+
+// Light that a surface sends on.
+fn surface_light(p: vec3f, normal: vec3f, albedo: vec3f) -> vec3f {
+  let altitude = max(altitude_at(p, ground.planet_radius_m), 0.0);
+  let cosine = light_cos_zenith(p, ground.towards_light, ground.planet_radius_m);
+  var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
+  var scattered = vec3f(0.0);
+  var from_clouds = vec3f(0.0);
+#if SHADOW
+  // The sides of the clouds round about light the ground as well, in their shadows most of all.
+  from_clouds = key * max(ground.towards_light.y, 0.0) / PI * (1.0 - ground.mean_shadow) * CLOUD_REFLECTION
+    * ground.shadow_strength;
+  let through = light_through_cloud(p);
+  scattered = key * through.y * max(ground.towards_light.y, 0.0) / PI;
+  key *= through.x;
+#endif
+  var sky = (textureLoad(sky_ambient, vec2u(3u, 0u), 0).rgb + from_clouds) * (0.6 + 0.4 * normal.y);
+#if SOLIDS
+  let open = solid_openness(p, normal, ground.planet_radius_m);
+  sky *= open;
+  scattered *= open;
+  if (dot(normal, ground.towards_light) > 0.0) {
+    key *= solid_shadow(p + normal * 0.5, ground.towards_light, shapes.light_radius, ground.planet_radius_m);
+  }
+#endif
+  return albedo * (key * max(dot(normal, ground.towards_light), 0.0) / PI + scattered + sky);
+}
+
+#if SOLIDS
+// The colour of the solid thing that is nearest to a place.
+fn solid_colour(p: vec3f) -> vec3f {
+  let place = vec3f(p.x, altitude_at(p, ground.planet_radius_m), p.z);
+  var nearest = NO_SHAPE_M;
+  var colour = vec3f(0.5);
+  for (var i = shapes.clouds; i < shapes.clouds + shapes.solids; i++) {
+    let distance = abs(shape_distance(shapes.list[i], place));
+    colour = select(colour, shapes.list[i].colour, distance < nearest);
+    nearest = min(nearest, distance);
+  }
+  return colour;
 }
 #endif
 
@@ -193,22 +244,7 @@ fn ground_light(p: vec3f, dir: vec3f, distance_m: f32) -> vec3f {
   let footprint = distance_m * view.sample_angle / max(-dot(flat_normal, dir), 0.01);
   let cover = ground_cover(place, footprint, wet);
   let normal = normalize(flat_normal - vec3f(cover.slope.x, 0.0, cover.slope.y));
-  let albedo = with_rock(ground.albedo * cover.tint, p, flat_normal);
-  let altitude = max(altitude_at(p, ground.planet_radius_m), 0.0);
-  let cosine = light_cos_zenith(p, ground.towards_light, ground.planet_radius_m);
-  var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
-  var scattered = vec3f(0.0);
-  var from_clouds = vec3f(0.0);
-#if SHADOW
-  // The sides of the clouds round about light the ground as well, in their shadows most of all.
-  from_clouds = key * max(ground.towards_light.y, 0.0) / PI * (1.0 - ground.mean_shadow) * CLOUD_REFLECTION
-    * ground.shadow_strength;
-  let through = light_through_cloud(p);
-  scattered = key * through.y * max(ground.towards_light.y, 0.0) / PI;
-  key *= through.x;
-#endif
-  let sky = (textureLoad(sky_ambient, vec2u(3u, 0u), 0).rgb + from_clouds) * (0.6 + 0.4 * normal.y);
-  return albedo * (key * max(dot(normal, ground.towards_light), 0.0) / PI + scattered + sky);
+  return surface_light(p, normal, with_rock(ground.albedo * cover.tint, p, flat_normal));
 }
 #endif
 
@@ -225,11 +261,25 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   // An eye inside a hill sees from above it.
   eye.y = select(eye.y, max(eye.y, ground_height(vec2f(0.0), 0.0) + 2.0), ground.highest_m > 0.0);
 #endif
-  let hit = ground_hit(eye, dir);
+  var hit = ground_hit(eye, dir);
+#if SOLIDS
+  let solid = solid_hit(eye, dir, select(NO_SHAPE_M, hit, hit >= 0.0), ground.planet_radius_m);
+  hit = select(hit, solid, solid >= 0.0);
+#endif
   var light: vec3f;
   if (hit >= 0.0) {
     let ahead = aerial_at(sky_aerial_light, sky_aerial_transmittance, linear_repeat, air, dir, hit);
-    light = ground_light(eye + dir * hit, dir, hit) * ahead.transmittance + ahead.light;
+    let p = eye + dir * hit;
+#if SOLIDS
+    if (solid >= 0.0) {
+      light = surface_light(p, solid_normal(p, max(0.5, 3e-4 * hit), ground.planet_radius_m), solid_colour(p));
+    } else {
+      light = ground_light(p, dir, hit);
+    }
+#else
+    light = ground_light(p, dir, hit);
+#endif
+    light = light * ahead.transmittance + ahead.light;
   } else {
     light = sky_with_lights(dir);
   }

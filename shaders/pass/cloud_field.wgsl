@@ -5,6 +5,9 @@
 #import "cloud/profile.wgsl"
 #import "cloud/thesis.wgsl"
 #import "cloud/weather.wgsl"
+#if SHAPES
+#import "pass/cloud_shapes.wgsl"
+#endif
 #import "common/shell.wgsl"
 #import "common/trilinear.wgsl"
 #import "generated/LayerUniforms.wgsl"
@@ -17,6 +20,7 @@ const MODEL_TEXTURE: u32 = 3u;
 const MODEL_GRID: u32 = 4u;
 const MODEL_PRODUCT: u32 = 5u;
 const MODEL_AUTOMATON: u32 = 6u;
+const MODEL_SHAPES: u32 = 7u;
 const DOMAIN_SHELL: u32 = 0u;
 const DOMAIN_FLAT: u32 = 1u;
 const DOMAIN_BOX: u32 = 2u;
@@ -283,6 +287,19 @@ fn automaton_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Rea
 }
 #endif
 
+#if SHAPES
+fn shapes_at(layer: LayerUniforms, p: vec3f, altitude: f32, h: f32, reading: Reading) -> f32 {
+  let distance = cloud_shapes_distance(vec3f(p.x, altitude, p.z));
+  clear_way = min(clear_way, max(distance, 0.0));
+  let profile = shapes_profile(distance);
+  if (profile_bound(profile, layer) <= 0.0) {
+    return 0.0;
+  }
+  let types = mix(vec3f(1.0, 0.0, 0.0), layer.form.xyz, layer.form.w);
+  return formed_at(layer, p, h, profile, Weather(1.0, types, 0.5), reading);
+}
+#endif
+
 #if THESIS
 fn thesis_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let weather = weather_at(layer, p.xz, h);
@@ -450,6 +467,11 @@ fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
     density = automaton_at(index, layer, p, h, reading);
   }
 #endif
+#if SHAPES
+  if (layer.model == MODEL_SHAPES) {
+    density = shapes_at(layer, p, altitude, h, reading);
+  }
+#endif
 #if UNIFORM
   if (layer.model == MODEL_UNIFORM) {
     density = weather_at(layer, p.xz, h).body;
@@ -486,7 +508,7 @@ fn extinction_of(densities: vec4f) -> f32 {
 // Never below the density of a layer anywhere in a cell of the map, whose greatest body is given: the only majorant.
 fn density_bound(layer: LayerUniforms, greatest_body: f32) -> f32 {
   var bound = greatest_body;
-  if (layer.model == MODEL_PROFILE || layer.model == MODEL_AUTOMATON) {
+  if (layer.model == MODEL_PROFILE || layer.model == MODEL_AUTOMATON || layer.model == MODEL_SHAPES) {
     bound = profile_bound(greatest_body, layer);
   }
   if (layer.model == MODEL_THESIS) {

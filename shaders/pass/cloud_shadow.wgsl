@@ -1,5 +1,5 @@
 // The share of the key light that clouds let through to the ground, on a map around the eye: straight in red, scattered
-// downwards in green.
+// downwards in green, and straight to the height of the highest solid thing in blue.
 #import "generated/BandUniforms.wgsl"
 #import "generated/GroundUniforms.wgsl"
 #import "pass/sun_depth.wgsl"
@@ -23,15 +23,18 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   let segment = domain_segments(p, ground.towards_light).first;
   let length = min(segment.y - segment.x, 30000.0);
   var depth = 0.0;
+  var above = 0.0;
   if (length > 0.0) {
     let step = length / f32(SHADOW_STEPS);
     for (var i = 0u; i < SHADOW_STEPS; i++) {
       let q = p + ground.towards_light * (segment.x + (f32(i) + 0.5) * step);
-      depth += shadow_extinction(q, Reading(1.0, false, 1.0, false)) * step;
+      let own = shadow_extinction(q, Reading(1.0, false, 1.0, false)) * step;
+      depth += own;
+      above += select(0.0, own, altitude_of(q) > ground.receiver_m);
     }
   }
   // What droplets scatter downwards passes as through a two-stream layer of asymmetry 0.85.
   let direct = exp(-depth);
   let diffuse = 1.0 / (1.0 + 0.75 * 0.15 * depth) - direct;
-  textureStore(shadow_out, texel, vec4f(direct, max(diffuse, 0.0), 0.0, 0.0));
+  textureStore(shadow_out, texel, vec4f(direct, max(diffuse, 0.0), exp(-above), 0.0));
 }

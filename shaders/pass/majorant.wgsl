@@ -64,13 +64,48 @@ fn voxel_majorant(p: vec3f, altitude: f32, dir: vec3f) -> Majorant {
 }
 #endif
 
+#if SHAPES
+// Nearer than this to a shape, its inside is within reach.
+const NEAREST_SHAPE_M: f32 = 20.0;
+
+// The distance to shapes is a reach that they are out of, or else says how deep inside of them a place within reach can be.
+fn shapes_majorant(p: vec3f, altitude: f32) -> Majorant {
+  let distance = cloud_shapes_distance(vec3f(p.x, altitude, p.z));
+  if (distance > NEAREST_SHAPE_M) {
+    return Majorant(0.0, distance);
+  }
+  let reach = NEAREST_SHAPE_M + max(-0.5 * distance, 0.0);
+  let profile = shapes_profile(distance - reach);
+  var extinction = 0.0;
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    let low = (altitude - reach - layer.base_m) * layer.per_thickness;
+    let high = (altitude + reach - layer.base_m) * layer.per_thickness;
+    if (layer.model == MODEL_SHAPES && low < 1.0 && high > 0.0) {
+      extinction += density_bound(layer, profile) * layer.extinction_per_m;
+    }
+  }
+  return Majorant(extinction, reach);
+}
+#endif
+
+// The majorants of what the map does not place, beside that of what it does.
+fn with_the_unmapped(mapped: Majorant, p: vec3f, altitude: f32, dir: vec3f) -> Majorant {
+  var all = mapped;
+#if GRID
+  let of_voxels = voxel_majorant(p, altitude, dir);
+  all = Majorant(all.extinction_per_m + of_voxels.extinction_per_m, min(all.reach_m, of_voxels.reach_m));
+#endif
+#if SHAPES
+  let of_shapes = shapes_majorant(p, altitude);
+  all = Majorant(all.extinction_per_m + of_shapes.extinction_per_m, min(all.reach_m, of_shapes.reach_m));
+#endif
+  return all;
+}
+
 #if MAPLESS
 fn majorant_at(p: vec3f, dir: vec3f) -> Majorant {
-#if GRID
-  return voxel_majorant(p, altitude_of(p), dir);
-#else
-  return Majorant(0.0, FAR_M);
-#endif
+  return with_the_unmapped(Majorant(0.0, FAR_M), p, altitude_of(p), dir);
 }
 #else
 // The greatest field of the map in cells of four sizes and the cells around them, each half as wide as the one before.
@@ -115,7 +150,7 @@ fn majorant_of(p: vec3f, altitude: f32, level: u32) -> Majorant {
     let layer = scene.layers[i];
     let low = (altitude - reach - layer.base_m) * layer.per_thickness;
     let high = (altitude + reach - layer.base_m) * layer.per_thickness;
-    if (low < 1.0 && high > 0.0 && layer.model != MODEL_GRID) {
+    if (low < 1.0 && high > 0.0 && layer.model != MODEL_GRID && layer.model != MODEL_SHAPES) {
       let uv = map_uv(layer, p.xz, clamp((altitude - layer.base_m) * layer.per_thickness, 0.0, 1.0));
       let on_map = select(clamp(uv, vec2f(0.0), vec2f(1.0)), uv - floor(uv), scene.map_edge == EDGE_REPEAT);
       var body = greatest_body(layer, greatest_field(on_map, level));
@@ -146,11 +181,6 @@ fn majorant_at(p: vec3f, dir: vec3f) -> Majorant {
   }
   // Above or below all layers nothing is nearer than the gap.
   majorant = Majorant(select(majorant.extinction_per_m, 0.0, gap > majorant.reach_m), max(majorant.reach_m, gap));
-#if GRID
-  let of_voxels = voxel_majorant(p, altitude, dir);
-  majorant.extinction_per_m += of_voxels.extinction_per_m;
-  majorant.reach_m = min(majorant.reach_m, of_voxels.reach_m);
-#endif
-  return majorant;
+  return with_the_unmapped(majorant, p, altitude, dir);
 }
 #endif

@@ -81,6 +81,9 @@ effects! {
     Terrain ("terrain", "Hills and mountains.") {
         flags: ["TERRAIN"], bindings: ["terrain_map"], passes: ["bake_terrain"]
     }
+    Solids ("solid shapes", "Solid things, and their shadows.") {
+        flags: ["SOLIDS"], bindings: [], passes: []
+    }
     GroundEverywhere ("ground in open rows", "A search for ground in rows of the picture that lie above all of it.") {
         flags: [], bindings: [], passes: [], essential: true
     }
@@ -115,6 +118,9 @@ effects! {
     }
     Shear ("wind shear", "Cells of the automaton that the wind carries on, the higher the farther.") {
         flags: [], bindings: [], passes: ["automaton_drift"]
+    }
+    Shapes ("shapes model", "Clouds in the form of shapes.") {
+        flags: ["SHAPES"], bindings: [], passes: []
     }
     ShapeNoise ("large noise", "Billows of the profile model and of the weather texture.") {
         flags: [], bindings: ["shape_noise"], passes: ["bake_shape"], essential: true

@@ -5,7 +5,7 @@ use super::effect::Effect;
 use super::light::{KeyLight, Lighting};
 use super::variant::MarchVariant;
 use super::{GroundPlan, SkyPlan, rows, view};
-use crate::scene::{Frame, Output, Projection};
+use crate::scene::{Frame, Output, Projection, ShapeRole};
 
 /// Share of the sun's light below which moonlight in the air is lost in half floats.
 const LOST_IN_DAYLIGHT: f32 = 1e-5;
@@ -17,7 +17,8 @@ pub(super) fn ground(frame: &Frame<'_>, why: &mut Verdicts) -> Option<GroundPlan
     let ground = &frame.scene.ground;
     let relief_m = ground.mountains_m + ground.hills_m;
     let rows = frame.render_size()[1];
-    let open_rows = rows::open_rows(frame);
+    let solids = frame.scene.has_shapes(ShapeRole::Solid);
+    let open_rows = if solids { 0 } else { rows::open_rows(frame) };
     let runs = why.unless(
         Effect::Ground,
         &[
@@ -36,6 +37,7 @@ pub(super) fn ground(frame: &Frame<'_>, why: &mut Verdicts) -> Option<GroundPlan
         format!("relief is {relief_m:.0} m high"),
         "there are no hills and no mountains",
     );
+    let solids = why.needed_if(solids, Effect::Solids, "some shape is solid", "no shape is solid");
     let everywhere = why.unless(
         Effect::GroundEverywhere,
         &[
@@ -45,7 +47,7 @@ pub(super) fn ground(frame: &Frame<'_>, why: &mut Verdicts) -> Option<GroundPlan
         "ground may be in every row",
     );
     let open_rows = if everywhere || open_rows >= rows { 0 } else { open_rows };
-    Some(GroundPlan { terrain, shadow_px: None, open_rows })
+    Some(GroundPlan { terrain, solids, shadow_px: None, open_rows })
 }
 
 /// Edge length of the map of cloud shadows.

@@ -41,6 +41,8 @@ choices! {
 pub struct GroundPlan {
     /// Whether it has relief.
     pub terrain: bool,
+    /// Whether solid shapes stand on it or over it.
+    pub solids: bool,
     /// Edge length of the map of cloud shadows on it.
     pub shadow_px: Option<u32>,
     /// Rows from the top of the picture in which no ray can meet it.

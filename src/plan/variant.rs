@@ -55,6 +55,8 @@ pub struct MarchVariant {
     pub product: bool,
     /// Some layer is a cellular automaton.
     pub automaton: bool,
+    /// Some layer's clouds are shapes.
+    pub shapes: bool,
     /// Some layer is the voxels of a file.
     pub grid: bool,
     /// All layers are read from voxels that were baked before, so many from west to east.
@@ -89,13 +91,14 @@ pub struct MarchVariant {
 
 impl MarchVariant {
     /// Every flag of the density field.
-    const FIELD_FLAGS: [&'static str; 12] = [
+    const FIELD_FLAGS: [&'static str; 13] = [
         "PROFILE",
         "THESIS",
         "UNIFORM",
         "TEXTURE",
         "PRODUCT",
         "AUTOMATON",
+        "SHAPES",
         "GRID",
         "BAKED",
         "MAPLESS",
@@ -115,7 +118,7 @@ impl MarchVariant {
         let any = |test: fn(&CloudLayer) -> bool| layers.iter().any(|layer| test(layer));
         let has = |model: DensityModel| layers.iter().any(|layer| layer.model == model);
         let profile = why.needed_if(
-            has(DensityModel::Profile) || has(DensityModel::Automaton),
+            [DensityModel::Profile, DensityModel::Automaton, DensityModel::Shapes].into_iter().any(has),
             Effect::Profile,
             "some layer has it, or takes its billows",
             "no layer has it",
@@ -128,6 +131,7 @@ impl MarchVariant {
         let texture = model(Effect::Texture, DensityModel::Texture);
         let product = model(Effect::Product, DensityModel::Product);
         let automaton = model(Effect::Automaton, DensityModel::Automaton);
+        let shapes = model(Effect::Shapes, DensityModel::Shapes);
         let is_sheared = |l: &CloudLayer| l.model == DensityModel::Automaton && l.automaton.shear != 0.0;
         why.unless(
             Effect::Shear,
@@ -186,6 +190,7 @@ impl MarchVariant {
             texture,
             product,
             automaton,
+            shapes,
             grid,
             baked,
             mapless: !reads_map,
@@ -274,7 +279,7 @@ impl MarchVariant {
             "nothing asks for it",
         );
         let repeats = scene.weather.edge == MapEdge::Repeat;
-        let is_mapped = scene.visible_layers().any(|l| !matches!(l.model, DensityModel::Uniform | DensityModel::Grid));
+        let is_mapped = scene.visible_layers().any(|l| l.reads_map() && l.model != DensityModel::Uniform);
         let skip = why.unless(
             Effect::ClearWays,
             &[
@@ -320,6 +325,7 @@ impl MarchVariant {
             texture: false,
             product: false,
             automaton: false,
+            shapes: false,
             grid: true,
             mapless: true,
             detail: false,
@@ -360,6 +366,7 @@ impl MarchVariant {
             seen.texture,
             seen.product,
             seen.automaton,
+            seen.shapes,
             seen.grid,
             seen.baked.is_some(),
             seen.mapless,

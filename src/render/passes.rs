@@ -15,6 +15,7 @@ pub(super) struct FrameBuffers {
     pub(super) display: wgpu::Buffer,
     pub(super) plain: Option<wgpu::Buffer>,
     pub(super) shafts: Option<wgpu::Buffer>,
+    pub(super) shapes: Option<wgpu::Buffer>,
 }
 
 impl FrameBuffers {
@@ -25,7 +26,7 @@ impl FrameBuffers {
             ("ground", self.ground.as_entire_binding()),
             ("display", self.display.as_entire_binding()),
         ];
-        let optional = [("plain", &self.plain), ("shafts", &self.shafts)];
+        let optional = [("plain", &self.plain), ("shafts", &self.shafts), ("shapes", &self.shapes)];
         bound.extend(optional.iter().filter_map(|(name, buffer)| Some((*name, buffer.as_ref()?.as_entire_binding()))));
         bound
     }
@@ -105,6 +106,7 @@ fn background_key(plan: &FramePlan, is_open: bool) -> ProgramKey {
         ("GROUND", ground.is_some()),
         ("TERRAIN", ground.is_some_and(|ground| ground.terrain)),
         ("SHADOW", ground.is_some_and(|ground| ground.shadow_px.is_some())),
+        ("SOLIDS", ground.is_some_and(|ground| ground.solids)),
         ("OPEN", is_open),
         ("STARS", sky.stars),
         ("SUN_DISC", sky.sun_disc),

@@ -3,7 +3,7 @@
 use super::uniforms::air::AirUniforms;
 use super::uniforms::other::{
     AutomatonUniforms, BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, PlainUniforms, ReliefUniforms,
-    ShaftUniforms, TruthUniforms,
+    ShaftUniforms, ShapeUniforms, ShapesUniforms, TruthUniforms,
 };
 use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
 use crate::gpu::ShaderTable;
@@ -47,8 +47,10 @@ pub const TABLE: ShaderTable = ShaderTable {
         "SAMPLES",
         "SHADOW",
         "SHAFTS",
+        "SHAPES",
         "SINGLE",
         "SKIP",
+        "SOLIDS",
         "STARS",
         "SUN_DISC",
         "TERRAIN",
@@ -72,6 +74,8 @@ pub const TABLE: ShaderTable = ShaderTable {
         ReliefUniforms::GENERATED,
         SceneUniforms::GENERATED,
         ShaftUniforms::GENERATED,
+        ShapeUniforms::GENERATED,
+        ShapesUniforms::GENERATED,
         ViewUniforms::GENERATED,
     ],
 };

@@ -4,13 +4,14 @@ use std::path::{Path, PathBuf};
 
 use super::context::{Bound, Context, Extent};
 use super::passes::{field_key, view_of};
-use super::uniforms::field_uniforms;
+use super::uniforms::other::ShapesUniforms;
 use super::uniforms::scene::SceneUniforms;
+use super::uniforms::{Eye, field_uniforms, shapes_uniforms};
 use super::{RenderError, Renderer};
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture, job, readback};
 use crate::images::voxels::{Bounds, VoxelGrid};
-use crate::plan::{FramePlan, MarchVariant};
-use crate::scene::{CloudLayer, DensityModel, Frame, Scene};
+use crate::plan::{FramePlan, Lighting, MarchVariant};
+use crate::scene::{Camera, CloudLayer, DensityModel, Frame, Scene};
 
 /// Voxels along each edge of a cell whose greatest value is known; as `cloud/voxels.wgsl` has it.
 const PER_CELL: u32 = 8;
@@ -44,6 +45,8 @@ struct Made<K> {
 #[derive(Debug, PartialEq)]
 struct BakedFrom {
     field: SceneUniforms,
+    /// The shapes, where a layer is of them.
+    shapes: Option<Box<ShapesUniforms>>,
     /// Which of the weather maps and of the automaton's densities it was, by their counts.
     counts: [u64; 2],
     file: Option<FileState>,
@@ -125,6 +128,10 @@ impl Voxels {
         };
         let from = BakedFrom {
             field: field_uniforms(frame),
+            shapes: march.shapes.then(|| {
+                let origin = Eye::new(&Camera::default());
+                Box::new(shapes_uniforms(frame.scene, &Lighting::new(frame.scene), &origin))
+            }),
             counts,
             file: self.file.as_ref().map(|file| file.from.clone()),
             variant: march.field_alone(),
@@ -138,6 +145,8 @@ impl Voxels {
         let scene = context.gpu.uniform("scene", bytemuck::bytes_of(&from.field));
         let mut bound = inputs.clone();
         bound.push(("scene", scene.as_entire_binding()));
+        let shapes = from.shapes.as_ref().map(|shapes| context.gpu.uniform("shapes", bytemuck::bytes_of(&**shapes)));
+        bound.extend(shapes.iter().map(|shapes| ("shapes", shapes.as_entire_binding())));
         bound.push(("voxels_out", view_of(&values)));
         if let Some(file) = &self.file {
             bound.push(("voxels", view_of(&file.values)));

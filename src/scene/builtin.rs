@@ -65,6 +65,8 @@ pub const BUILTINS: &[Builtin] = builtins![
     "box_stormy",
     "living_cumulus",
     "living_evening",
+    "sculpted_heaps",
+    "towers_in_fog",
 ];
 
 /// The built-in preset of that name.

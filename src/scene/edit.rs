@@ -4,7 +4,7 @@ use super::bounds::{Fault, colour_fault, count_fault, float_fault, range_phrase}
 use super::genus::Genus;
 use super::nearest::did_you_mean;
 use super::param::{Choice as _, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
-use super::{MAX_LAYERS, Quality, Scene};
+use super::{Quality, Scene};
 
 /// Why a parameter was not set. The scene is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -124,7 +124,7 @@ fn set_genus(scene: &mut Scene, value: &str) -> Result<(), EditError> {
 }
 
 /// Sets the parameter with that key to the value written as in a preset; a file name may go without quotes. The item
-/// after the last of a list, up to [`MAX_LAYERS`], is made as a copy of the last.
+/// after the last of a list, up to [`super::most_of`] its name, is made as a copy of the last.
 ///
 /// # Errors
 /// See [`EditError`]; `root` is then unchanged.
@@ -267,7 +267,7 @@ impl Visitor for Set<'_> {
         let (index, rest) = rest.split_once('.').unwrap_or((rest, ""));
         let Ok(index) = index.parse::<usize>() else { return };
         let count = list.count();
-        let greatest = count.min(MAX_LAYERS - 1);
+        let greatest = count.min(super::most_of(info.name) - 1);
         if index > greatest {
             let key = self.key[..self.key.len() - self.rest.len()].to_owned() + info.name;
             self.outcome = Some(Err(EditError::Index { key, count, greatest }));
@@ -524,7 +524,7 @@ mod tests {
             (
                 "layers.0.model",
                 "thesis",
-                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform, Texture, Grid, Product, Automaton",
+                "layers.0.model = thesis cannot be read; expected one of Profile, Thesis, Uniform, Texture, Grid, Product, Automaton, Shapes",
             ),
             ("layers.3.base_m", "1", "layers: the list has 1 item(s), so the index may be at most 1"),
             (

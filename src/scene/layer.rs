@@ -21,6 +21,8 @@ choices! {
         Product ("Perlin × Voronoi"),
         /// Clouds that live: cells that become humid, condense and vanish, with the billows of the program's own model (Dobashi et al. 2000).
         Automaton ("Cellular automaton"),
+        /// The sky's shapes of cloud, with the billows of the program's own model (Thomann 2020, chapter 4; Costa 2023, section 2.2).
+        Shapes ("Shapes"),
     }
 }
 
@@ -232,7 +234,7 @@ impl CloudLayer {
 
     /// Whether the weather map says where its clouds are.
     pub fn reads_map(&self) -> bool {
-        self.model != DensityModel::Grid
+        !matches!(self.model, DensityModel::Grid | DensityModel::Shapes)
     }
 
     /// Effective radius of its droplets in micrometres: that of equal droplets, broader by k = 0.8 (Martin, Johnson and Spice

@@ -24,6 +24,7 @@ pub mod preset;
 mod quality;
 pub mod random;
 pub mod reference_docs;
+mod shape;
 mod sun_position;
 mod weather;
 
@@ -38,6 +39,7 @@ pub use preset::{
     Bookmark, MAX_BOOKMARKS, PRESET_VERSION, Preset, PresetError, file_stem, quality_from_ron, quality_to_ron,
 };
 pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
+pub use shape::{MAX_SHAPES, Shape, ShapeJoin, ShapeKind, ShapeRole};
 pub use sun_position::{CITIES, Moment};
 pub use weather::{MapEdge, MapLayer, MapSource, Weather, Wind};
 
@@ -46,11 +48,20 @@ use crate::params;
 /// Most cloud layers one scene may hold.
 pub const MAX_LAYERS: usize = 4;
 
+/// Most items that a list of parameters may hold, by its name.
+pub fn most_of(list: &str) -> usize {
+    if list == "shapes" { MAX_SHAPES } else { MAX_LAYERS }
+}
+
 params! {
     /// What the sky is.
     pub struct Scene ("Scene") {
         /// Sheets of cloud; they may overlap.
         layers: Vec<CloudLayer> = vec![CloudLayer::default()];
+        /// Bodies of cloud for layers of that model, and solid things.
+        shapes: Vec<Shape> = vec![Shape::default()];
+        /// Over what depth inside shapes their clouds become full.
+        shape_edge_m: f32 = 220.0, 1.0..=5000.0, Metres, logarithmic;
         /// Where clouds are.
         weather: Weather = Weather::default();
         /// Wind that carries them.
@@ -91,6 +102,9 @@ impl Scene {
                 self.weather.layers.len()
             ));
         }
+        if self.shapes.len() > MAX_SHAPES {
+            problems.push(format!("shapes: {} shapes, but at most {MAX_SHAPES} can be drawn", self.shapes.len()));
+        }
         let mut grids = self.layers.iter().enumerate().filter(|(_, layer)| layer.model == DensityModel::Grid);
         if let Some((index, _)) = grids.next()
             && self.domain.kind != DomainKind::Box
@@ -121,6 +135,7 @@ impl Scene {
     pub fn mend(&mut self) {
         self.layers.truncate(MAX_LAYERS);
         self.weather.layers.truncate(MAX_LAYERS);
+        self.shapes.truncate(MAX_SHAPES);
         for layer in &mut self.layers {
             layer.top_m = layer.top_m.max(layer.base_m);
         }
@@ -153,8 +168,15 @@ impl Scene {
     /// The same, each with its index among all.
     pub fn numbered_layers(&self) -> impl Iterator<Item = (usize, &CloudLayer)> {
         let coverage = self.weather.greatest_coverage();
+        let has_shapes = self.has_shapes(ShapeRole::Cloud);
         let all = self.layers.iter().enumerate().take(MAX_LAYERS);
-        all.filter(move |(_, layer)| layer.is_visible() && layer.is_covered(coverage))
+        let holds_any = move |layer: &CloudLayer| has_shapes || layer.model != DensityModel::Shapes;
+        all.filter(move |(_, layer)| layer.is_visible() && layer.is_covered(coverage) && holds_any(layer))
+    }
+
+    /// Whether any shape has a role. What joins by taking away, or by what is common, needs one before it.
+    pub fn has_shapes(&self, role: ShapeRole) -> bool {
+        self.shapes.iter().any(|shape| shape.role == role && shape.join == ShapeJoin::Union)
     }
 
     /// Unit vector towards the sun.

@@ -7,7 +7,7 @@ use super::probe::{Filter, Probe, Reset, duplicate_last_from};
 use super::{clipboard, row};
 use crate::app::action::{Action, Browse, Request};
 use crate::scene::param::{Choice, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor};
-use crate::scene::{MAX_LAYERS, Quality, QualityLevel, Scene, edit};
+use crate::scene::{Quality, QualityLevel, Scene, edit, most_of};
 
 /// Sections that are unfolded when the program starts for the first time.
 const OPEN_AT_FIRST: [&str; 2] = ["weather", "sun"];
@@ -347,7 +347,7 @@ impl Visitor for Rows<'_> {
                 continue;
             }
             let heading = Heading { title: &title, doc: info.doc };
-            let full = list.count() >= MAX_LAYERS;
+            let full = list.count() >= most_of(info.name);
             let all = [HeaderButton::Remove, HeaderButton::Duplicate, HeaderButton::Reset];
             let without_duplicate = [HeaderButton::Remove, HeaderButton::Reset];
             let buttons: &[HeaderButton] = if full { &without_duplicate } else { &all };
@@ -363,7 +363,7 @@ impl Visitor for Rows<'_> {
             self.browse = browse.or(self.browse.take());
             press = press.or(pressed.map(|button| (index, button)));
         }
-        if !self.filter.hides() && list.count() < MAX_LAYERS {
+        if !self.filter.hides() && list.count() < most_of(info.name) {
             let title = info.title.to_lowercase();
             let response = self.ui.button(format!("+ Add {title}")).on_hover_text(format!("Adds another {title}"));
             if response.clicked() {

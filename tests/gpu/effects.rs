@@ -9,7 +9,8 @@ use nephoscope::plan::{Effect, Forced, FramePlan, Need};
 use nephoscope::render::{programs, shaders::TABLE};
 use nephoscope::scene::builtin::BUILTINS;
 use nephoscope::scene::{
-    DensityModel, DomainKind, FieldOfViewAxis, MapEdge, MapSource, Output, PhaseKind, Quality, Scene, UpdateFraction,
+    DensityModel, DomainKind, FieldOfViewAxis, MapEdge, MapSource, Output, PhaseKind, Quality, Scene, Shape, ShapeRole,
+    UpdateFraction,
 };
 
 use crate::common::sky::{frame, quick, renderer};
@@ -121,6 +122,11 @@ fn living(s: &mut Setup) {
     s.scene.weather.coverage = 1.0;
 }
 
+fn shaped(s: &mut Setup) {
+    s.all_layers(|layer| layer.model = DensityModel::Shapes);
+    s.scene.camera.pitch_deg = 15.0;
+}
+
 fn boxed(s: &mut Setup) {
     s.scene.domain.kind = DomainKind::Box;
     s.quality.grid_voxels = 32;
@@ -188,6 +194,14 @@ fn scenes(effect: Effect) -> Example {
             }],
             true,
         ),
+        Effect::Solids => {
+            const ON: Change = |s| {
+                looking_down(s);
+                let near = Shape { role: ShapeRole::Solid, south_m: -700.0, height_m: 100.0, ..Shape::default() };
+                s.scene.shapes = vec![Shape { width_m: 300.0, length_m: 200.0, tall_m: 400.0, ..near }];
+            };
+            example(ON, looking_down, &[looking_down, base], true)
+        }
         Effect::GroundEverywhere => example(
             looking_down,
             base,
@@ -246,6 +260,7 @@ fn scenes(effect: Effect) -> Example {
             };
             example(ON, living, &[living], true)
         }
+        Effect::Shapes => example(shaped, base, &[base], true),
         Effect::ShapeNoise => example(base, |s| s.all_layers(|layer| layer.model = DensityModel::Thesis), &[], false),
         Effect::Grid => example(
             |s| {

@@ -62,7 +62,7 @@ fn body(layer: &CloudLayer, coverage: f32) -> (f32, f32) {
     let coverage = (coverage + layer.coverage_offset).clamp(0.0, 1.0);
     match layer.model {
         DensityModel::Thesis | DensityModel::Texture if coverage > 0.0 => (1.0 / coverage, 1.0 - 1.0 / coverage),
-        DensityModel::Thesis | DensityModel::Texture | DensityModel::Grid => (0.0, 0.0),
+        DensityModel::Thesis | DensityModel::Texture | DensityModel::Grid | DensityModel::Shapes => (0.0, 0.0),
         DensityModel::Profile | DensityModel::Uniform | DensityModel::Product | DensityModel::Automaton => {
             let softness = layer.edge_softness;
             (1.0 / softness, -(1.0 - coverage * (1.0 + softness)) / softness)
@@ -110,6 +110,7 @@ fn model_index(model: DensityModel) -> u32 {
         DensityModel::Grid => 4,
         DensityModel::Product => 5,
         DensityModel::Automaton => 6,
+        DensityModel::Shapes => 7,
     }
 }
 

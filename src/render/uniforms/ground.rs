@@ -5,7 +5,7 @@ use glam::{Vec2, Vec4};
 use super::camera::Eye;
 use super::other::GroundUniforms;
 use crate::plan::Lighting;
-use crate::scene::Scene;
+use crate::scene::{Scene, ShapeRole};
 
 /// Half the edge of the square that cloud shadows are mapped on.
 const SHADOW_REACH_M: f64 = 26_000.0;
@@ -43,8 +43,14 @@ pub(crate) fn ground_uniforms(scene: &Scene, lighting: &Lighting, eye: &Eye, sha
         mean_shadow: 1.0 - 0.55 * scene.weather.coverage,
         shadow_strength: ground.cloud_shadows,
         reach_m: 70_000.0,
-        pad0: 0.0,
+        receiver_m: receiver_m(scene),
         pad1: 0.0,
         pad2: 0.0,
     }
+}
+
+/// Height that no solid thing exceeds by much; 0 where there is none.
+fn receiver_m(scene: &Scene) -> f32 {
+    let solid = scene.shapes.iter().filter(|shape| shape.role == ShapeRole::Solid);
+    solid.map(|shape| shape.height_m + 0.5 * shape.tall_m).fold(0.0, f32::max)
 }

@@ -11,12 +11,14 @@ mod ground;
 mod living;
 pub mod other;
 pub mod scene;
+mod shapes;
 
 pub(super) use camera::{Eye, camera_uniforms};
 pub(crate) use clouds::wind_mps;
 pub(super) use clouds::{field_uniforms, plain_sky, scene_uniforms};
 pub(super) use ground::ground_uniforms;
 pub use living::automaton_uniforms;
+pub(super) use shapes::shapes_uniforms;
 
 use super::pass::sky::{SkyInputs, SkyParts};
 use crate::plan::{Lighting, SkyPlan};

@@ -35,8 +35,8 @@ gpu_struct! {
         pub shadow_strength: f32,
         /// Distance beyond which the ground is smooth.
         pub reach_m: f32,
-        /// Keeps the size a multiple of 16 bytes.
-        pub pad0: f32,
+        /// Height of the highest solid thing, for which shadows of clouds are mapped as for the ground.
+        pub receiver_m: f32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad1: f32,
         /// Keeps the size a multiple of 16 bytes.
@@ -103,6 +103,46 @@ gpu_struct! {
         pub index: u32,
         /// Random bits of the run.
         pub run: u32,
+    }
+
+    /// One shape.
+    pub struct ShapeUniforms {
+        /// Its middle: east and south of the eye, and above sea level.
+        pub centre: Vec3,
+        /// Which kind.
+        pub kind: u32,
+        /// Half its extent along its own axes.
+        pub half_size: Vec3,
+        /// Over what distance it melts into those before it.
+        pub blend_m: f32,
+        /// Quaternion that turns the world's axes to its own.
+        pub local_from_world: Vec4,
+        /// Colour of a solid thing.
+        pub colour: Vec3,
+        /// How it joins those before it.
+        pub join: u32,
+        /// Radius of its edges.
+        pub rounding_m: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: f32,
+    }
+
+    /// All shapes: clouds, then solid things.
+    pub struct ShapesUniforms {
+        /// How many are clouds.
+        pub clouds: u32,
+        /// How many are solid.
+        pub solids: u32,
+        /// 1 over the depth inside of a cloud at which its profile is full.
+        pub per_edge: f32,
+        /// Apparent radius of the key light, in radians.
+        pub light_radius: f32,
+        /// The shapes.
+        pub list: [ShapeUniforms; 64],
     }
 
     /// How two states of a map join.
