@@ -173,6 +173,7 @@ impl Document {
                     animation.follow(key, "layers", &before.preset.scene.layers, layers);
                     let maps = [&before.preset.scene, &self.preset.scene].map(|scene| &scene.weather.layers);
                     animation.follow(key, "weather.layers", maps[0], maps[1]);
+                    animation.follow(key, "shapes", &before.preset.scene.shapes, &self.preset.scene.shapes);
                 }
                 animation.keep_only_what_is_in(&self.preset.scene);
                 if action.is_edit_of_scene() {

@@ -3,12 +3,12 @@
 use std::collections::VecDeque;
 
 use super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
-use super::{CloudLayer, Scene};
+use super::{CloudLayer, Scene, Shape};
 
 /// The sky a share of the way from one to the other: 0 is the first, 1 the second, bit for bit.
 ///
 /// Numbers go evenly over their sliders, directions take the shorter way round, and what has nothing in between changes half
-/// way. A cloud layer that only one of them has comes or goes by its density.
+/// way. A cloud layer that only one of them has comes or goes by its density, a shape by its size.
 pub fn morph(from: &Scene, to: &Scene, share: f32) -> Scene {
     if share.is_nan() || share <= 0.0 {
         return from.clone();
@@ -17,8 +17,12 @@ pub fn morph(from: &Scene, to: &Scene, share: f32) -> Scene {
         return to.clone();
     }
     let (mut begin, mut end) = (from.clone(), to.clone());
-    complete(&mut begin.layers, &end.layers);
-    complete(&mut end.layers, &begin.layers);
+    let thin = |layer: &CloudLayer| CloudLayer { density: 0.0, ..layer.clone() };
+    complete(&mut begin.layers, &end.layers, thin);
+    complete(&mut end.layers, &begin.layers, thin);
+    let small = |shape: &Shape| Shape { width_m: 0.0, length_m: 0.0, tall_m: 0.0, blend_m: 0.0, ..shape.clone() };
+    complete(&mut begin.shapes, &end.shapes, small);
+    complete(&mut end.shapes, &begin.shapes, small);
     if begin.weather.layers.len() != end.weather.layers.len() {
         let nearer = if share < 0.5 { &begin.weather.layers } else { &end.weather.layers }.clone();
         begin.weather.layers.clone_from(&nearer);
@@ -35,11 +39,9 @@ pub fn morph(from: &Scene, to: &Scene, share: f32) -> Scene {
     begin
 }
 
-/// Gives `layers` those of `others` that it lacks, without any density.
-fn complete(layers: &mut Vec<CloudLayer>, others: &[CloudLayer]) {
-    for other in others.iter().skip(layers.len()) {
-        layers.push(CloudLayer { density: 0.0, ..other.clone() });
-    }
+/// Gives `items` those of `others` that it lacks, as nothing.
+fn complete<T>(items: &mut Vec<T>, others: &[T], as_nothing: impl Fn(&T) -> T) {
+    items.extend(others.iter().skip(items.len()).map(as_nothing));
 }
 
 /// A value of any type.
@@ -172,7 +174,8 @@ impl Visitor for Towards {
 
     fn colour(&mut self, _: &Info<Colour>, value: &mut Colour) {
         if let Some(Any::Colour(end)) = self.next() {
-            let mixed = value.vec().lerp(end.vec(), self.share);
+            // Of two that are equal, exactly that.
+            let mixed = value.vec() + (end.vec() - value.vec()) * self.share;
             *value = Colour(mixed.x, mixed.y, mixed.z);
         }
     }
