@@ -14,6 +14,7 @@ mod gpu {
     mod lab;
     mod math;
     mod noise;
+    mod painting;
     mod phase;
     mod phase_sample;
     mod physics;
@@ -25,6 +26,7 @@ mod gpu {
     mod stills;
     mod temporal;
     mod textures;
+    mod transitions;
     mod truth;
     mod verify;
 }

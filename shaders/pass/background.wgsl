@@ -174,25 +174,21 @@ fn with_rock(albedo: vec3f, p: vec3f, normal: vec3f) -> vec3f {
 // with broken cumulus the sky gives about a third of all light, in clear air a sixth.
 const CLOUD_REFLECTION: f32 = 0.6;
 
-// Share of the key light that cloud lets through to a place on the ground: straight, and scattered downwards.
-fn light_through_cloud(p: vec3f) -> vec2f {
+// Share of the key light that cloud lets through to a place on the ground, or so far up to the highest solid thing: straight,
+// and scattered downwards.
+fn light_through_cloud(p: vec3f, raised: f32) -> vec2f {
   let foot = p - ground.towards_light * (p.y / max(ground.towards_light.y, 0.05));
   let uv = foot.xz * ground.shadow_from_world.z + ground.shadow_from_world.xy;
   let edge = clamp((0.5 - max(abs(uv.x - 0.5), abs(uv.y - 0.5))) * 8.0, 0.0, 1.0);
   let texel = textureSampleLevel(cloud_shadow, linear_clamp, uv, 0.0);
-  var mapped = texel.xy;
-#if SOLIDS
-  // Solid things stand above some of the clouds.
-  let raised = clamp(altitude_at(p, ground.planet_radius_m) / max(ground.receiver_m, 1.0), 0.0, 1.0);
-  mapped = mix(mapped, vec2f(texel.z, 0.0), raised);
-#endif
+  let mapped = mix(texel.xy, vec2f(texel.z, 0.0), raised);
   let beyond = vec2f(ground.mean_shadow, 0.4 * (1.0 - ground.mean_shadow));
   return mix(vec2f(1.0, 0.0), mix(beyond, mapped, edge), ground.shadow_strength);
 }
 #endif
 
-// Light that a surface sends on.
-fn surface_light(p: vec3f, normal: vec3f, albedo: vec3f) -> vec3f {
+// Light that a surface sends on; `raised` says how far up it is to the highest solid thing, which stands above some clouds.
+fn surface_light(p: vec3f, normal: vec3f, albedo: vec3f, raised: f32) -> vec3f {
   let altitude = max(altitude_at(p, ground.planet_radius_m), 0.0);
   let cosine = light_cos_zenith(p, ground.towards_light, ground.planet_radius_m);
   var key = ground.light_illuminance * light_transmittance(sky_transmittance, linear_repeat, air, altitude, cosine);
@@ -202,7 +198,7 @@ fn surface_light(p: vec3f, normal: vec3f, albedo: vec3f) -> vec3f {
   // The sides of the clouds round about light the ground as well, in their shadows most of all.
   from_clouds = key * max(ground.towards_light.y, 0.0) / PI * (1.0 - ground.mean_shadow) * CLOUD_REFLECTION
     * ground.shadow_strength;
-  let through = light_through_cloud(p);
+  let through = light_through_cloud(p, raised);
   scattered = key * through.y * max(ground.towards_light.y, 0.0) / PI;
   key *= through.x;
 #endif
@@ -244,7 +240,7 @@ fn ground_light(p: vec3f, dir: vec3f, distance_m: f32) -> vec3f {
   let footprint = distance_m * view.sample_angle / max(-dot(flat_normal, dir), 0.01);
   let cover = ground_cover(place, footprint, wet);
   let normal = normalize(flat_normal - vec3f(cover.slope.x, 0.0, cover.slope.y));
-  return surface_light(p, normal, with_rock(ground.albedo * cover.tint, p, flat_normal));
+  return surface_light(p, normal, with_rock(ground.albedo * cover.tint, p, flat_normal), 0.0);
 }
 #endif
 
@@ -272,7 +268,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let p = eye + dir * hit;
 #if SOLIDS
     if (solid >= 0.0) {
-      light = surface_light(p, solid_normal(p, max(0.5, 3e-4 * hit), ground.planet_radius_m), solid_colour(p));
+      let raised = clamp(altitude_at(p, ground.planet_radius_m) / max(ground.receiver_m, 1.0), 0.0, 1.0);
+      let normal = solid_normal(p, max(0.5, 3e-4 * hit), ground.planet_radius_m);
+      light = surface_light(p, normal, solid_colour(p), raised);
     } else {
       light = ground_light(p, dir, hit);
     }

@@ -364,6 +364,7 @@ impl Action {
     pub fn name(&self) -> String {
         match self {
             Self::EditScene { key, .. } if key == "vary" => "vary the sky".to_owned(),
+            Self::EditScene { key, .. } if key.ends_with(".strokes") => "paint".to_owned(),
             Self::EditScene { key, .. } => format!("edit {key}"),
             Self::EditQuality { key, .. } => format!("edit quality.{key}"),
             Self::SetQualityLevel(_) => "set the quality level".to_owned(),

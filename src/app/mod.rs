@@ -5,6 +5,7 @@
 
 pub mod about;
 pub mod action;
+mod brush;
 pub mod camera_control;
 mod crash;
 pub mod document;

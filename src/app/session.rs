@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
 use super::action::{Action, Answer, Browse, Part, Request};
+use super::brush::UnderWay;
 use super::document::Document;
 use super::preferences::Preferences;
 use super::storage;
@@ -68,6 +69,8 @@ pub struct Session {
     kept: Preferences,
     /// A file that others have changed and that the user was told of.
     warned_of: Option<PathBuf>,
+    /// The stroke of the brush that is under way.
+    pub(super) stroke: Option<UnderWay>,
     /// What waits for the answer about unsaved changes.
     pending: Option<Request>,
     /// What a crash left behind, until the user decides.
@@ -89,7 +92,18 @@ impl Session {
         let ui = ui::State { library, ..ui::State::default() };
         let preferences = Preferences::load(&folders.state.join(PREFERENCES));
         let kept = preferences.clone();
-        Self { document, ui, folders, preferences, kept, pending: None, recovered: Vec::new(), warned_of: None, listed }
+        Self {
+            document,
+            ui,
+            folders,
+            preferences,
+            kept,
+            stroke: None,
+            pending: None,
+            recovered: Vec::new(),
+            warned_of: None,
+            listed,
+        }
     }
 
     /// Whether the user has not decided yet about what a crash left behind.
@@ -121,7 +135,8 @@ impl Session {
 
     /// Draws one frame of the panels, carries out what the user wants, and returns what only the window can do.
     pub fn frame(&mut self, ui: &mut egui::Ui, readout: &ui::Readout) -> Vec<Request> {
-        self.document.hold(ui.input(|input| input.pointer.any_down()));
+        // A stroke ends when all of it is painted.
+        self.document.hold(ui.input(|input| input.pointer.any_down()) || !self.ui.paint.touches.is_empty());
         let actions = ui::show(ui, &mut self.ui, (&self.document, &mut self.preferences), readout);
         let requests = actions.into_iter().filter_map(|action| self.perform(action)).collect();
         if self.ui.dialog.is_none() {

@@ -147,15 +147,20 @@ impl Viewport {
         self.budget_ms.and_then(|_| self.governor.said())
     }
 
-    /// What one point of the picture is, in numbers; the point is 0 to 1 from the top left. `None` while shaders are compiled.
-    pub(super) fn pick(&mut self, at: [f32; 2]) -> Result<Option<Picked>, RenderError> {
-        let Some(inputs) = &self.begun else { return Ok(None) };
-        let mut scene = inputs.scene.clone();
+    /// The direction that a point of the picture shows; `None` before there is any.
+    pub(super) fn towards(&self, at: [f32; 2]) -> Option<glam::Vec3> {
+        let inputs = self.begun.as_ref()?;
         let (offset, share) = inputs.frame().window_shares();
         #[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
         let in_whole = [0, 1].map(|axis| (offset[axis] + share[axis] * f64::from(at[axis])) as f32);
+        Some(inputs.scene.camera.direction_through(in_whole, inputs.frame().whole_size()))
+    }
+
+    /// What one point of the picture is, in numbers; the point is 0 to 1 from the top left. `None` while shaders are compiled.
+    pub(super) fn pick(&mut self, at: [f32; 2]) -> Result<Option<Picked>, RenderError> {
+        let (Some(inputs), Some(towards)) = (&self.begun, self.towards(at)) else { return Ok(None) };
+        let mut scene = inputs.scene.clone();
         let whole = inputs.frame().whole_size();
-        let towards = scene.camera.direction_through(in_whole, whole);
         let eye = [scene.camera.east_m, scene.camera.height_m, scene.camera.south_m];
         let up = if towards.y.abs() > 0.99 { glam::Vec3::X } else { glam::Vec3::Y };
         scene.camera.look(towards, up);

@@ -1,6 +1,7 @@
 //! The window and its event loop: who is woken when, and what is drawn then.
 
 mod meter;
+mod paint;
 mod pictures;
 mod still;
 mod truth;
@@ -291,6 +292,7 @@ impl App {
 
     /// Sends the next slice of the picture, asks for the panels when they are due, and says when to wake up.
     fn work(&mut self) -> Option<Instant> {
+        self.paint();
         let live = self.live.as_mut()?;
         let now = Instant::now();
         let mut wake = self.recovery.due_in(&self.session.document).map(|due| now + due);

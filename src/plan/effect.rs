@@ -134,6 +134,9 @@ effects! {
     WeatherMap ("weather map", "Where clouds stand.") {
         flags: [], bindings: ["weather_map"], passes: ["weather_map"], essential: true
     }
+    Painting ("painted map", "Clouds painted on the weather map, or taken away from it.") {
+        flags: [], bindings: ["painted"], passes: ["paint"]
+    }
     Detail ("detail", "Erosion of the clouds' surface by the small noise.") {
         flags: ["DETAIL"], bindings: ["detail_noise"], passes: ["bake_detail"]
     }

@@ -4,7 +4,9 @@ use super::decide::{Need, Verdicts};
 use super::effect::Effect;
 use super::view;
 use super::{KeyLight, Lighting};
-use crate::scene::{CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapSource, Output, PhaseKind, Scene};
+use crate::scene::{
+    CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapLayer, MapSource, Output, PhaseKind, Scene,
+};
 
 /// Fewest voxels across a baked box; half as many upwards have to be more than one.
 const LEAST_VOXELS: u32 = 4;
@@ -157,6 +159,15 @@ impl MarchVariant {
             "layers are placed by it"
         };
         why.unless(Effect::WeatherMap, &[(!reads_map, Need::Impossible, "no layer is placed by it")], of_map);
+        let is_painted = |map: &MapLayer| map.source == MapSource::Painted && map.strokes.dabs() > 0;
+        why.unless(
+            Effect::Painting,
+            &[
+                (!reads_map, Need::Impossible, "no layer is placed by the map"),
+                (!scene.weather.layers.iter().any(is_painted), Need::Needless, "nothing is painted on it"),
+            ],
+            "the map is painted",
+        );
         let detail = why.needed_if(
             any(CloudLayer::has_detail),
             Effect::Detail,

@@ -13,6 +13,7 @@ mod interactive;
 mod layers;
 pub mod meter;
 mod output;
+mod paint;
 pub mod pass;
 mod passes;
 pub mod probe;
@@ -58,6 +59,7 @@ pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
         .chain(bakes::programs(plan))
         .chain(voxels::programs(plan))
         .chain(automaton::programs(plan))
+        .chain(paint::programs(plan))
         .chain(clearance::programs(plan))
         .chain(passes::programs(plan, true))
         .collect()

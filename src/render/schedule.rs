@@ -14,7 +14,7 @@ use super::uniforms::scene::ViewUniforms;
 use super::uniforms::{self, Eye};
 use super::{History, Pending, RenderError, Renderer};
 use crate::gpu::Job;
-use crate::plan::{FramePlan, HistoryKey, Lighting};
+use crate::plan::{Effect, FramePlan, HistoryKey, Lighting};
 use crate::scene::{Frame, Projection, direction};
 
 /// Beyond this the picture before shows nothing of this one.
@@ -141,7 +141,7 @@ impl Renderer {
         self.living.update(&context, (frame, plan), jobs)?;
         match plan.march.filter(|march| !march.mapless) {
             Some(march) => {
-                self.weather.update(&context, &scene.weather, frame.time_secs, jobs)?;
+                self.weather.update(&context, (&scene.weather, frame.time_secs), plan.runs(Effect::Painting), jobs)?;
                 let tracks = plan.tracks && march.baked.is_none();
                 self.weather.update_bounds(&context, tracks, jobs)?;
                 // Shadows alone need no clear ways; a view that turns back does.

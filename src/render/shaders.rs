@@ -2,8 +2,8 @@
 
 use super::uniforms::air::AirUniforms;
 use super::uniforms::other::{
-    AutomatonUniforms, BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, PlainUniforms, ReliefUniforms,
-    ShaftUniforms, ShapeUniforms, ShapesUniforms, TruthUniforms,
+    AutomatonUniforms, BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, PaintUniforms, PlainUniforms,
+    ReliefUniforms, ShaftUniforms, ShapeUniforms, ShapesUniforms, TruthUniforms,
 };
 use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
 use crate::gpu::ShaderTable;
@@ -69,6 +69,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         GroundUniforms::GENERATED,
         LayerUniforms::GENERATED,
         MapUniforms::GENERATED,
+        PaintUniforms::GENERATED,
         PlainUniforms::GENERATED,
         TruthUniforms::GENERATED,
         ReliefUniforms::GENERATED,

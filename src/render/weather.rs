@@ -1,14 +1,16 @@
 //! The weather map of the moment, from its layers: generated states that evolve, images, and image sequences.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::RenderError;
 use super::context::{Bound, Context, Extent};
+use super::paint::{Painting, blend_key};
 use super::uniforms::other::{BlendUniforms, MapUniforms};
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
 use crate::images::map::read_map_image;
 use crate::images::pattern::FramePattern;
-use crate::scene::{MapLayer, MapSource, Weather};
+use crate::scene::{MapBlend, MapLayer, MapSource, Strokes, Weather};
 
 /// Edge length of the map.
 const SIDE: u32 = 512;
@@ -30,6 +32,17 @@ enum StateKey {
     Image(PathBuf),
 }
 
+/// How a layer joins those below it, and how much of it counts.
+type Joining = (MapBlend, f32);
+
+/// What one layer is at a time.
+#[derive(Clone, Debug, PartialEq)]
+enum LayerKey {
+    /// Between two states, by the share of the later one, and how it joins those below it.
+    Between([StateKey; 2], f32, Joining),
+    Painted(Strokes, f32),
+}
+
 #[derive(Debug)]
 struct State {
     key: StateKey,
@@ -44,39 +57,57 @@ pub(super) struct WeatherMap {
     joined: Vec<Texture>,
     /// The greatest field of the map around each of its cells, by name, where paths track by it.
     bounds: Vec<(&'static str, Texture)>,
-    /// States and share that each joined map was made from.
-    made_from: Vec<(StateKey, StateKey, f32)>,
+    /// What each joined map was made from.
+    made_from: Vec<LayerKey>,
+    /// What is painted, by the layer.
+    paintings: BTreeMap<usize, Painting>,
     /// Maps joined so far.
     count: u64,
 }
 
 impl WeatherMap {
     pub(super) fn new() -> Self {
-        Self { states: Vec::new(), joined: Vec::new(), bounds: Vec::new(), made_from: Vec::new(), count: 0 }
+        Self {
+            states: Vec::new(),
+            joined: Vec::new(),
+            bounds: Vec::new(),
+            made_from: Vec::new(),
+            paintings: BTreeMap::new(),
+            count: 0,
+        }
     }
 
     /// Appends the jobs that bring the map to a time.
     pub(super) fn update(
         &mut self,
         context: &Context<'_>,
-        weather: &Weather,
-        time_secs: f64,
+        (weather, time_secs): (&Weather, f64),
+        is_painted: bool,
         jobs: &mut Vec<Job>,
     ) -> Result<(), RenderError> {
         let mut wanted = Vec::new();
         for (index, layer) in weather.layers.iter().enumerate() {
-            let states =
-                states_at(layer, weather, time_secs).map_err(|message| RenderError::Map { layer: index, message })?;
-            for key in [&states.0, &states.1] {
-                if !self.states.iter().any(|state| state.key == *key) {
-                    let texture = make_state(context, key, jobs).map_err(|error| error.in_layer(index))?;
-                    self.states.push(State { key: key.clone(), texture });
+            let mut key =
+                layer_at(layer, weather, time_secs).map_err(|message| RenderError::Map { layer: index, message })?;
+            match &mut key {
+                LayerKey::Between(states, ..) => {
+                    for key in states {
+                        if !self.states.iter().any(|state| state.key == *key) {
+                            let texture = make_state(context, key, jobs).map_err(|error| error.in_layer(index))?;
+                            self.states.push(State { key: key.clone(), texture });
+                        }
+                    }
                 }
+                LayerKey::Painted(strokes, _) if !is_painted => *strokes = Strokes::default(),
+                LayerKey::Painted(..) => {}
             }
-            wanted.push(states);
+            wanted.push(key);
         }
         let is_same = wanted == self.made_from;
-        self.states.retain(|state| wanted.iter().any(|(before, after, _)| state.key == *before || state.key == *after));
+        let is_wanted = |state: &State| {
+            wanted.iter().any(|layer| matches!(layer, LayerKey::Between(states, ..) if states.contains(&state.key)))
+        };
+        self.states.retain(is_wanted);
         if is_same {
             return Ok(());
         }
@@ -123,23 +154,26 @@ impl WeatherMap {
         all.map(|(name, texture)| (name, wgpu::BindingResource::TextureView(&texture.view))).collect()
     }
 
-    fn join(
-        &mut self,
-        context: &Context<'_>,
-        wanted: &[(StateKey, StateKey, f32)],
-        jobs: &mut Vec<Job>,
-    ) -> Result<(), GpuError> {
+    fn join(&mut self, context: &Context<'_>, wanted: &[LayerKey], jobs: &mut Vec<Job>) -> Result<(), GpuError> {
         self.joined.truncate(wanted.len());
         while self.joined.len() < wanted.len() {
             self.joined.push(Texture::new_2d(context.gpu, "weather_map", [SIDE; 2], FORMAT)?);
         }
         let linear_repeat = repeat_sampler(context.gpu);
-        for (index, (before, after, share)) in wanted.iter().enumerate() {
+        self.paintings.retain(|index, _| matches!(wanted.get(*index), Some(LayerKey::Painted(..))));
+        for (index, layer) in wanted.iter().enumerate() {
+            let ([before, after], share, (mode, opacity)) = match layer {
+                LayerKey::Between(states, share, joining) => (states, share, joining),
+                LayerKey::Painted(strokes, opacity) => {
+                    self.lay_over(context, index, (strokes, *opacity), jobs)?;
+                    continue;
+                }
+            };
             let find = |key: &StateKey| self.states.iter().find(|state| state.key == *key).map(|state| &state.texture);
             let (Some(before), Some(after)) = (find(before), find(after)) else {
                 continue;
             };
-            let blend = BlendUniforms { share: *share, pad0: 0.0, pad1: 0.0, pad2: 0.0 };
+            let blend = BlendUniforms { share: *share, mode: blend_index(*mode), opacity: *opacity, pad2: 0.0 };
             let buffer = context.gpu.uniform("blend", bytemuck::bytes_of(&blend));
             let mut bound: Bound<'_> = vec![
                 ("blend", buffer.as_entire_binding()),
@@ -158,6 +192,30 @@ impl WeatherMap {
         Ok(())
     }
 
+    /// Lays a painted layer over the map below it.
+    fn lay_over(
+        &mut self,
+        context: &Context<'_>,
+        index: usize,
+        (strokes, opacity): (&Strokes, f32),
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), GpuError> {
+        let painting = self.paintings.entry(index).or_insert_with(|| Painting::new(context.gpu, SIDE));
+        painting.update(context, strokes, jobs)?;
+        let blend = BlendUniforms { share: 0.0, mode: 0, opacity, pad2: 0.0 };
+        let buffer = context.gpu.uniform("blend", bytemuck::bytes_of(&blend));
+        let below = index.checked_sub(1).map(|below| &self.joined[below].view);
+        let mut bound: Bound<'_> = vec![
+            ("blend", buffer.as_entire_binding()),
+            ("painted", painting.buffer().as_entire_binding()),
+            ("map_out", wgpu::BindingResource::TextureView(&self.joined[index].view)),
+        ];
+        bound.extend(below.map(|below| ("map_below", wgpu::BindingResource::TextureView(below))));
+        let key = blend_key(below.is_some());
+        jobs.push(context.whole("weather_map", &key, &bound, Extent::image([SIDE; 2]))?);
+        Ok(())
+    }
+
     /// Forgets everything, as when no cloud is drawn.
     pub(super) fn clear(&mut self) {
         *self = Self { count: self.count, ..Self::new() };
@@ -171,13 +229,18 @@ impl WeatherMap {
     /// Device memory in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let states = self.states.iter().map(|state| &state.texture);
-        states.chain(&self.joined).chain(self.bounds.iter().map(|(_, bound)| bound)).map(Texture::bytes).sum()
+        let painted = self.paintings.values().map(|painting| painting.buffer().size()).sum::<u64>();
+        let textures = states.chain(&self.joined).chain(self.bounds.iter().map(|(_, bound)| bound));
+        painted + textures.map(Texture::bytes).sum::<u64>()
     }
 }
 
-/// The two states a layer is between at a time, and the share of the later one.
+/// What a layer is at a time.
 #[allow(clippy::cast_possible_truncation, reason = "counts of states and images are small; shares are in 0..1")]
-fn states_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<(StateKey, StateKey, f32), String> {
+fn layer_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<LayerKey, String> {
+    let joining = (layer.blend, layer.opacity);
+    // How it joins makes no other state of it.
+    let layer = &MapLayer { blend: MapBlend::Densest, opacity: 1.0, ..layer.clone() };
     match layer.source {
         MapSource::Generated | MapSource::WeatherTexture => {
             let period = f64::from(weather.evolution_secs);
@@ -187,11 +250,12 @@ fn states_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<(Sta
             // The blend moves in steps of 1/64, below what can be seen, so that it need not run in every frame.
             let share = ((position - state) * 64.0).floor() / 64.0;
             let after = if share > 0.0 { key(state + 1.0) } else { key(state) };
-            Ok((key(state), after, share as f32))
+            Ok(LayerKey::Between([key(state), after], share as f32, joining))
         }
+        MapSource::Painted => Ok(LayerKey::Painted(layer.strokes.clone(), joining.1)),
         MapSource::Image => {
             let name = named(layer)?;
-            Ok((StateKey::Image(name.into()), StateKey::Image(name.into()), 0.0))
+            Ok(LayerKey::Between([(); 2].map(|()| StateKey::Image(name.into())), 0.0, joining))
         }
         MapSource::Sequence => {
             let pattern = FramePattern::parse(Path::new(named(layer)?)).map_err(|error| error.to_string())?;
@@ -205,8 +269,19 @@ fn states_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<(Sta
                 StateKey::Image(frames[index].1.clone())
             };
             let share = ((position - position.floor()) * 16.0).floor() / 16.0;
-            Ok((at(0), at(usize::from(share > 0.0)), share as f32))
+            Ok(LayerKey::Between([at(0), at(usize::from(share > 0.0))], share as f32, joining))
         }
+    }
+}
+
+/// As `pass/weather_blend.wgsl` numbers them.
+fn blend_index(blend: MapBlend) -> u32 {
+    match blend {
+        MapBlend::Densest => 0,
+        MapBlend::Replace => 1,
+        MapBlend::Add => 2,
+        MapBlend::Subtract => 3,
+        MapBlend::Mask => 4,
     }
 }
 

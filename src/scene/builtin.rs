@@ -67,6 +67,7 @@ pub const BUILTINS: &[Builtin] = builtins![
     "living_evening",
     "sculpted_heaps",
     "towers_in_fog",
+    "contrails",
 ];
 
 /// The built-in preset of that name.

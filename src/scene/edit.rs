@@ -4,7 +4,7 @@ use super::bounds::{Fault, colour_fault, count_fault, float_fault, range_phrase}
 use super::genus::Genus;
 use super::nearest::did_you_mean;
 use super::param::{Choice as _, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
-use super::{Quality, Scene};
+use super::{Quality, Scene, Strokes};
 
 /// Why a parameter was not set. The scene is unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -246,6 +246,15 @@ impl Visitor for Set<'_> {
         }
     }
 
+    fn strokes(&mut self, info: &Info<Strokes>, value: &mut Strokes) {
+        if self.is_here(info.name) {
+            match ron::from_str(self.value) {
+                Ok(new) => self.accept(value, new, None),
+                Err(error) => self.outcome = Some(self.wrong_type(format!("{STROKES} ({})", error.code))),
+            }
+        }
+    }
+
     fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {
         if self.is_here(info.name) {
             self.group_instead(children);
@@ -309,6 +318,7 @@ pub struct Entry {
 
 /// What is allowed for a file.
 const FILE: &str = "a file name";
+const STROKES: &str = "strokes of the brush";
 
 impl Entry {
     /// Whether the parameter names a file.
@@ -381,6 +391,11 @@ impl Visitor for Keys {
 
     fn file(&mut self, info: &Info<FileName>, value: &mut FileName) {
         self.push(info, FILE.to_owned(), [info.default.0.clone(), value.0.clone()]);
+    }
+
+    fn strokes(&mut self, info: &Info<Strokes>, value: &mut Strokes) {
+        let text = |strokes: &Strokes| ron::to_string(strokes).unwrap_or_default();
+        self.push(info, STROKES.to_owned(), [text(&info.default), text(value)]);
     }
 
     fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {

@@ -18,6 +18,7 @@ mod layer;
 mod light;
 pub mod morph;
 pub mod nearest;
+mod paint;
 pub mod param;
 mod place;
 pub mod preset;
@@ -34,6 +35,7 @@ pub use cube::{CUBE_FACES, CubeFace};
 pub use frame::{Frame, LARGEST_WHOLE_PX, Output, Window};
 pub use layer::{BodyForm, CloudLayer, DensityModel, Optics, PerlinOctaves, Phase, PhaseKind, VoronoiOctaves};
 pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};
+pub use paint::{Brush, CloudKind, MAX_DABS, Stroke, Strokes};
 pub use place::{Camera, Display, Domain, DomainKind, FALSE_COLOURS, FieldOfViewAxis, Ground, Projection, ToneMap};
 pub use preset::{
     Bookmark, MAX_BOOKMARKS, PRESET_VERSION, Preset, PresetError, file_stem, quality_from_ron, quality_to_ron,
@@ -41,7 +43,7 @@ pub use preset::{
 pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
 pub use shape::{MAX_SHAPES, Shape, ShapeJoin, ShapeKind, ShapeRole};
 pub use sun_position::{CITIES, Moment};
-pub use weather::{MapEdge, MapLayer, MapSource, Weather, Wind};
+pub use weather::{MapBlend, MapEdge, MapLayer, MapSource, Weather, Wind};
 
 use crate::params;
 
@@ -179,6 +181,28 @@ impl Scene {
         self.shapes.iter().any(|shape| shape.role == role && shape.join == ShapeJoin::Union)
     }
 
+    /// Where a direction from the eye first meets a height above the sea, relative to the eye; `None` where it never does, or
+    /// behind the ground.
+    #[allow(clippy::cast_possible_truncation, reason = "no farther than clouds are drawn")]
+    pub fn place_at_height(&self, towards: glam::Vec3, height_m: f32) -> Option<glam::Vec3> {
+        let [up, eye_m, height_m] = [towards.y, self.camera.height_m, height_m].map(f64::from);
+        let way = if self.domain.kind == DomainKind::Shell {
+            let radius = f64::from(self.domain.planet_radius_m);
+            let along = (radius + eye_m) * up;
+            // Both ways to a sphere about the planet's middle.
+            let roots = |height: f64| {
+                let within = along * along - (eye_m - height) * (2.0 * radius + eye_m + height);
+                (within >= 0.0).then(|| [-along - within.sqrt(), -along + within.sqrt()])
+            };
+            let first = |height: f64| roots(height)?.into_iter().find(|way| *way > 0.0);
+            let ground = if eye_m > 0.0 { first(0.0) } else { None };
+            first(height_m).filter(|way| ground.is_none_or(|ground| *way <= ground))?
+        } else {
+            (height_m - eye_m) / up
+        };
+        (way > 0.0 && way < f64::from(Quality::default().max_distance_m)).then(|| towards * way as f32)
+    }
+
     /// Unit vector towards the sun.
     pub fn towards_sun(&self) -> glam::Vec3 {
         let (elevation, azimuth) = sun_position::elevation_azimuth_deg(&self.sun);
@@ -214,6 +238,24 @@ mod tests {
         assert!(direction(0.0, 0.0).abs_diff_eq(glam::Vec3::NEG_Z, 1e-6), "north is −z");
         assert!(direction(0.0, 90.0).abs_diff_eq(glam::Vec3::X, 1e-6), "east is x");
         assert!(direction(90.0, 12.0).abs_diff_eq(glam::Vec3::Y, 1e-6), "up is y");
+    }
+
+    #[test]
+    fn a_height_is_met_where_geometry_says() {
+        let mut scene = Scene::default();
+        scene.camera.height_m = 100.0;
+        let up = scene.place_at_height(glam::Vec3::Y, 1600.0).expect("overhead");
+        assert!((up.y - 1500.0).abs() < 0.1, "{up}");
+        let slant = scene.place_at_height(glam::Vec3::new(0.6, 0.8, 0.0), 1600.0).expect("above");
+        assert!((slant.x - 1125.0).abs() < 1.0, "{slant}");
+        let level = scene.place_at_height(glam::Vec3::X, 1600.0).expect("over the horizon");
+        let by_hand = (2.0_f64 * 6.36e6 * 1500.0).sqrt();
+        assert!((f64::from(level.x) / by_hand - 1.0).abs() < 1e-3, "{level}, by hand {by_hand}");
+        assert_eq!(scene.place_at_height(glam::Vec3::new(0.6, -0.8, 0.0), 1600.0), None, "behind the ground");
+        assert_eq!(scene.place_at_height(glam::Vec3::NEG_Y, 50.0), Some(glam::Vec3::NEG_Y * 50.0), "below");
+        scene.domain.kind = DomainKind::Flat;
+        assert_eq!(scene.place_at_height(glam::Vec3::X, 1600.0), None, "never");
+        assert_eq!(scene.place_at_height(glam::Vec3::NEG_Y, 1600.0), None, "behind the eye");
     }
 
     #[test]

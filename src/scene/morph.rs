@@ -2,13 +2,15 @@
 
 use std::collections::VecDeque;
 
+use super::paint::Strokes;
 use super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
-use super::{CloudLayer, Scene, Shape};
+use super::{CloudLayer, DensityModel, MAX_LAYERS, MAX_SHAPES, MapBlend, MapLayer, Scene, Shape};
 
 /// The sky a share of the way from one to the other: 0 is the first, 1 the second, bit for bit.
 ///
 /// Numbers go evenly over their sliders, directions take the shorter way round, and what has nothing in between changes half
-/// way. A cloud layer that only one of them has comes or goes by its density, a shape by its size.
+/// way. A cloud layer that only one of them has comes or goes by its density and coverage, a shape by its size; so do both where two differ in
+/// what has nothing in between, such as their model or a seed, and the one weather map fades into the other, as far as there is room for both.
 pub fn morph(from: &Scene, to: &Scene, share: f32) -> Scene {
     if share.is_nan() || share <= 0.0 {
         return from.clone();
@@ -17,13 +19,28 @@ pub fn morph(from: &Scene, to: &Scene, share: f32) -> Scene {
         return to.clone();
     }
     let (mut begin, mut end) = (from.clone(), to.clone());
-    let thin = |layer: &CloudLayer| CloudLayer { density: 0.0, ..layer.clone() };
-    complete(&mut begin.layers, &end.layers, thin);
-    complete(&mut end.layers, &begin.layers, thin);
+    // Thick cloud is opaque long before its density is what it was: it has to shrink as well.
+    let [coverage_before, coverage_after] = [&begin, &end].map(|sky| sky.weather.greatest_coverage());
+    let thin =
+        |layer: &CloudLayer, coverage: f32| CloudLayer { density: 0.0, coverage_offset: -coverage, ..layer.clone() };
+    let as_nothing =
+        (|layer: &CloudLayer| thin(layer, coverage_before), |layer: &CloudLayer| thin(layer, coverage_after));
+    // Of these a sky has one at most.
+    let is_single = |layer: &CloudLayer| matches!(layer.model, DensityModel::Grid | DensityModel::Automaton);
+    let is_alone = |from: &CloudLayer, to: &CloudLayer| is_single(from) && is_single(to);
+    pair(&mut begin.layers, &mut end.layers, MAX_LAYERS, (as_nothing, is_alone));
     let small = |shape: &Shape| Shape { width_m: 0.0, length_m: 0.0, tall_m: 0.0, blend_m: 0.0, ..shape.clone() };
-    complete(&mut begin.shapes, &end.shapes, small);
-    complete(&mut end.shapes, &begin.shapes, small);
-    if begin.weather.layers.len() != end.weather.layers.len() {
+    pair(&mut begin.shapes, &mut end.shapes, MAX_SHAPES, ((small, small), |_: &Shape, _: &Shape| false));
+    if let ([from], [to]) = (&begin.weather.layers[..], &end.weather.layers[..])
+        && !are_alike(from, to)
+    {
+        let over = |opacity: f32| MapLayer { blend: MapBlend::Replace, opacity, ..to.clone() };
+        let both = [0.0, to.opacity].map(|opacity| vec![from.clone(), over(opacity)]);
+        // The map below is in the way of one that is not opaque.
+        if to.opacity >= 1.0 {
+            [begin.weather.layers, end.weather.layers] = both;
+        }
+    } else if begin.weather.layers.len() != end.weather.layers.len() {
         let nearer = if share < 0.5 { &begin.weather.layers } else { &end.weather.layers }.clone();
         begin.weather.layers.clone_from(&nearer);
         end.weather.layers = nearer;
@@ -39,13 +56,60 @@ pub fn morph(from: &Scene, to: &Scene, share: f32) -> Scene {
     begin
 }
 
-/// Gives `items` those of `others` that it lacks, as nothing.
-fn complete<T>(items: &mut Vec<T>, others: &[T], as_nothing: impl Fn(&T) -> T) {
-    items.extend(others.iter().skip(items.len()).map(as_nothing));
+/// Gives both lists the same items in the same order: those that only one has, or that are not alike, beside nothing, which
+/// is another before and after. Where that is more than `most`, or two cannot be side by side, unlike items stay a pair.
+fn pair<T: Params + Clone>(
+    from: &mut Vec<T>,
+    to: &mut Vec<T>,
+    most: usize,
+    ((before, after), is_alone): ((impl Fn(&T) -> T, impl Fn(&T) -> T), impl Fn(&T, &T) -> bool),
+) {
+    let mut split = (Vec::new(), Vec::new());
+    let mut together = (Vec::new(), Vec::new());
+    for index in 0..from.len().max(to.len()) {
+        match (from.get(index), to.get(index)) {
+            (Some(old), Some(new)) => {
+                if are_alike(old, new) || is_alone(old, new) {
+                    split.0.push(old.clone());
+                    split.1.push(new.clone());
+                } else {
+                    split.0.extend([old.clone(), before(new)]);
+                    split.1.extend([after(old), new.clone()]);
+                }
+                together.0.push(old.clone());
+                together.1.push(new.clone());
+            }
+            (Some(old), None) => {
+                for lists in [&mut split, &mut together] {
+                    lists.0.push(old.clone());
+                    lists.1.push(after(old));
+                }
+            }
+            (None, Some(new)) => {
+                for lists in [&mut split, &mut together] {
+                    lists.0.push(before(new));
+                    lists.1.push(new.clone());
+                }
+            }
+            (None, None) => {}
+        }
+    }
+    (*from, *to) = if split.0.len() <= most { split } else { together };
+}
+
+/// Whether two items agree in everything that has nothing in between.
+fn are_alike<T: Params + Clone>(one: &T, other: &T) -> bool {
+    let steps = |item: &T| {
+        let mut values = Values::default();
+        item.clone().visit(&mut values);
+        values.0.retain(|value| !matches!(value, Any::Float(_) | Any::Colour(_)));
+        values.0
+    };
+    steps(one) == steps(other)
 }
 
 /// A value of any type.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Any {
     Float(f32),
     Count(u32),
@@ -53,6 +117,7 @@ enum Any {
     Choice(usize),
     Colour(Colour),
     File(FileName),
+    Strokes(Strokes),
 }
 
 /// All values of a group in the order of their declaration.
@@ -89,6 +154,10 @@ impl Visitor for Values {
 
     fn file(&mut self, _: &Info<FileName>, value: &mut FileName) {
         self.0.push_back(Any::File(value.clone()));
+    }
+
+    fn strokes(&mut self, _: &Info<Strokes>, value: &mut Strokes) {
+        self.0.push_back(Any::Strokes(value.clone()));
     }
 
     fn group(&mut self, _: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {
@@ -186,6 +255,12 @@ impl Visitor for Towards {
         }
     }
 
+    fn strokes(&mut self, _: &Info<Strokes>, value: &mut Strokes) {
+        if let Some(Any::Strokes(end)) = self.next() {
+            self.snap(value, end);
+        }
+    }
+
     fn group(&mut self, _: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {
         children(self);
     }
@@ -226,5 +301,24 @@ mod tests {
         let middle = morph(&from, &to, 0.5);
         assert!((middle.sun.azimuth_deg - 5.0).abs() < 1e-3, "{}", middle.sun.azimuth_deg);
         assert!((middle.layers[1].density - 0.4).abs() < 1e-6, "{}", middle.layers[1].density);
+    }
+
+    #[test]
+    fn what_has_nothing_in_between_fades() {
+        let (mut from, mut to) = (Scene::default(), Scene::default());
+        to.layers[0].model = DensityModel::Product;
+        (from.weather.layers[0].seed, to.weather.layers[0].seed) = (1, 77);
+        let at = |share| morph(&from, &to, share);
+        let densities = |sky: &Scene| sky.layers.iter().map(|layer| (layer.model, layer.density)).collect::<Vec<_>>();
+        let expected = [(DensityModel::Profile, 0.75), (DensityModel::Product, 0.25)];
+        assert_eq!(densities(&at(0.25)), expected, "both are there");
+        let maps = at(0.25).weather.layers;
+        assert_eq!((maps.len(), maps[0].seed, maps[1].seed), (2, 1, 77));
+        assert_eq!((maps[1].blend, maps[1].opacity), (MapBlend::Replace, 0.25));
+        // Where there is no room they change half way.
+        from.layers.resize(MAX_LAYERS, CloudLayer::default());
+        to.layers.resize(MAX_LAYERS, to.layers[0].clone());
+        let model = |share| morph(&from, &to, share).layers[0].model;
+        assert_eq!((model(0.4), model(0.6)), (DensityModel::Profile, DensityModel::Product));
     }
 }

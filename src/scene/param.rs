@@ -5,6 +5,8 @@
 
 use std::ops::RangeInclusive;
 
+use super::paint::Strokes;
+
 /// What a number means, so that every display of it agrees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
@@ -194,6 +196,8 @@ pub trait Visitor {
     fn colour(&mut self, info: &Info<Colour>, value: &mut Colour);
     /// A file.
     fn file(&mut self, info: &Info<FileName>, value: &mut FileName);
+    /// What was painted. Only what reads or writes it has to look at it.
+    fn strokes(&mut self, _: &Info<Strokes>, _: &mut Strokes) {}
     /// A group of parameters.
     fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor));
     /// A list of groups.

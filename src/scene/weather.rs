@@ -1,5 +1,6 @@
 //! The weather map: document data that says where clouds are and of which type.
 
+use super::paint::Strokes;
 use super::param::FileName;
 use crate::{choices, params};
 
@@ -14,6 +15,24 @@ choices! {
         Image ("Image"),
         /// A numbered sequence of images, played over time.
         Sequence ("Image sequence"),
+        /// Strokes of the brush, over what the layers below have.
+        Painted ("Painted"),
+    }
+}
+
+choices! {
+    /// How a layer of the weather map joins those below it.
+    pub enum MapBlend {
+        /// Whichever has more cloud, of each kind.
+        Densest ("Densest"),
+        /// This layer alone.
+        Replace ("Replace"),
+        /// The sum.
+        Add ("Add"),
+        /// What lies below, less this one.
+        Subtract ("Take away"),
+        /// What lies below, times this one's cloud of all kinds: a mask.
+        Mask ("Mask"),
     }
 }
 
@@ -34,6 +53,11 @@ impl MapSource {
     pub fn is_generated(self) -> bool {
         matches!(self, Self::Generated | Self::WeatherTexture)
     }
+
+    /// Whether the wind carries it.
+    pub fn drifts(self) -> bool {
+        self.is_generated() || self == Self::Painted
+    }
 }
 
 params! {
@@ -43,8 +67,14 @@ params! {
         source: MapSource = MapSource::Generated;
         /// Image file (red: cumulus, green: stratus, blue: stratocumulus, each the greatest density there; for the model of weather textures coverage, height and altitude), or the pattern of a sequence such as `map.####.png`.
         image: FileName = FileName::default();
+        /// How the layer joins those below it. A painted one lies over them.
+        blend: MapBlend = MapBlend::Densest;
+        /// How much of the layer counts.
+        opacity: f32 = 1.0, 0.0..=1.0, None;
         /// Images shown per second of scene time, for a sequence.
         images_per_sec: f32 = 1.0, 0.001..=60.0, None, logarithmic;
+        /// Strokes of the brush in the window, for a painted layer; what they cover replaces the layers below.
+        strokes: Strokes = Strokes::default();
         /// Seed of the generated map.
         seed: u32 = 1, 0..=999_999, None;
         /// Large cells across the map; each is a field of cloud.
@@ -81,11 +111,11 @@ params! {
         size_m: f32 = 24_000.0, 1000.0..=500_000.0, Metres, logarithmic;
         /// What lies beyond the edge of the map.
         edge: MapEdge = MapEdge::Repeat;
-        /// Whether the generated map moves with the wind.
+        /// Whether the map moves with the wind, if all of it is generated or painted.
         moves: bool = true;
         /// Time in which the generated map becomes another. 0 holds it still.
         evolution_secs: f32 = 1200.0, 0.0..=100_000.0, Seconds;
-        /// Layers of the map, from the bottom; the last one that has data at a place decides.
+        /// Layers of the map, from the bottom.
         layers: Vec<MapLayer> = vec![MapLayer::default()];
     }
 }

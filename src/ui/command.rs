@@ -63,6 +63,8 @@ pub enum Command {
     FrameClouds,
     /// Keep the camera with the sky.
     KeepCamera,
+    /// Paint clouds over the picture, or not.
+    Paint,
     /// Directions over the picture on or off.
     Guides,
     /// Draw only a part of the picture, or all of it.
@@ -102,7 +104,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 44] = [
+const TABLE: [(Command, Modifiers, Key, &str); 45] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -116,6 +118,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 44] = [
     (Command::Undo, Modifiers::COMMAND, Key::Z, "Undo"),
     (Command::History, Modifiers::NONE, Key::F8, "History"),
     (Command::Inspect, Modifiers::NONE, Key::I, "Inspect points"),
+    (Command::Paint, Modifiers::NONE, Key::P, "Paint clouds"),
     (Command::Histogram, Modifiers::NONE, Key::H, "Histogram and exposure"),
     (Command::Snapshot, Modifiers::NONE, Key::F7, "Take a snapshot"),
     (Command::Vary, Modifiers::COMMAND, Key::R, "Vary the sky"),
@@ -218,6 +221,13 @@ impl Command {
             Self::Inspect => {
                 let is_on = !state.inspector.is_on;
                 state.inspector = super::InspectorState { is_on, ..Default::default() };
+                state.paint.is_on &= !is_on;
+            }
+            Self::Paint => {
+                state.paint.is_on = !state.paint.is_on;
+                state.paint.touches.clear();
+                // A click cannot do both.
+                state.inspector.is_on &= !state.paint.is_on;
             }
             Self::Snapshot => ask(Request::Snapshot),
             Self::Vary => state.vary.is_open = !state.vary.is_open,
@@ -312,6 +322,7 @@ impl Command {
             Self::Region => state.viewport.region.is_some() || state.viewport.is_choosing,
             Self::Vary => state.vary.is_open,
             Self::Inspect => state.inspector.is_on,
+            Self::Paint => state.paint.is_on,
             _ => false,
         }
     }
@@ -321,6 +332,7 @@ impl Command {
         matches!(
             self,
             Self::Inspect
+                | Self::Paint
                 | Self::Histogram
                 | Self::Guides
                 | Self::FrameClouds

@@ -13,6 +13,7 @@ mod inspector;
 mod lab;
 mod menu;
 mod overlay;
+mod paint;
 mod palette;
 mod panel;
 mod presets;
@@ -34,6 +35,7 @@ pub use histogram::HistogramState;
 pub use inspector::{InspectorState, Picked};
 pub use lab::{LabState, LabView, Measured, Phase};
 pub use overlay::{PassLine, Readout};
+pub use paint::{PaintState, Touch};
 pub use palette::PaletteState;
 pub use panel::PanelState;
 pub use presets::{Entry, Library, Morph, Thumbnail};
@@ -70,6 +72,8 @@ pub struct State {
     pub snapshots: SnapshotState,
     /// Points of the picture in numbers.
     pub inspector: InspectorState,
+    /// The brush.
+    pub paint: PaintState,
     /// Commands by name.
     pub palette: PaletteState,
     /// Random changes.
@@ -131,6 +135,7 @@ impl Default for State {
             show_overlay: false,
             snapshots: SnapshotState::default(),
             inspector: InspectorState::default(),
+            paint: PaintState::default(),
             palette: PaletteState::default(),
             vary: VaryState::default(),
             histogram: HistogramState::default(),
@@ -227,7 +232,7 @@ pub fn show(
         });
     }
     let central = egui::CentralPanel::no_frame().show(ui, |ui| {
-        let beside = (&mut state.truth, &mut state.snapshots, &mut state.inspector);
+        let beside = (&mut state.truth, &mut state.snapshots, &mut state.inspector, &mut state.paint);
         viewport::show(ui, &mut state.viewport, beside, (document, preferences.habit));
     });
     let area = central.response.rect;
@@ -244,6 +249,7 @@ pub fn show(
         histogram::show(ui.ctx(), (area, state.truth.height), &mut state.histogram, document, &mut actions);
     }
     inspector::show(ui.ctx(), area, &state.inspector);
+    paint::show(ui.ctx(), area, &mut state.paint);
     if state.vary.is_open && !state.hide_all {
         vary::show(ui.ctx(), area, (&mut state.vary, document), &mut actions);
     }

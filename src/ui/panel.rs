@@ -7,7 +7,7 @@ use super::probe::{Filter, Probe, Reset, duplicate_last_from};
 use super::{clipboard, row};
 use crate::app::action::{Action, Browse, Request};
 use crate::scene::param::{Choice, ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor};
-use crate::scene::{Quality, QualityLevel, Scene, edit, most_of};
+use crate::scene::{Quality, QualityLevel, Scene, Strokes, edit, most_of};
 
 /// Sections that are unfolded when the program starts for the first time.
 const OPEN_AT_FIRST: [&str; 2] = ["weather", "sun"];
@@ -306,6 +306,11 @@ impl Visitor for Rows<'_> {
         if browse {
             self.browse = Some(format!("{}{}", self.prefix, info.name));
         }
+    }
+
+    fn strokes(&mut self, info: &Info<Strokes>, value: &mut Strokes) {
+        let modified = *value != info.default;
+        self.row((info.name, info.doc), modified, |ui, key| row::strokes(ui, key, info, value));
     }
 
     fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {

@@ -1,6 +1,7 @@
 //! Small visitors that ask about parameters or change many of them: what is modified, what a filter matches, reset,
 //! duplicate, and set a file's name by its key.
 
+use crate::scene::Strokes;
 use crate::scene::morph::Values;
 use crate::scene::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor, label};
 
@@ -107,6 +108,10 @@ impl Visitor for Probe<'_> {
         self.see(info.name, info.doc, *value != info.default);
     }
 
+    fn strokes(&mut self, info: &Info<Strokes>, value: &mut Strokes) {
+        self.see(info.name, info.doc, *value != info.default);
+    }
+
     fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {
         let mut inner = Self::new(self.filter.for_children(info.title), &format!("{}.{}", self.prefix, info.name));
         children(&mut inner);
@@ -147,6 +152,10 @@ impl Visitor for Reset {
     }
 
     fn file(&mut self, info: &Info<FileName>, value: &mut FileName) {
+        value.clone_from(&info.default);
+    }
+
+    fn strokes(&mut self, info: &Info<Strokes>, value: &mut Strokes) {
         value.clone_from(&info.default);
     }
 

@@ -6,6 +6,7 @@ use egui::{Align, DragValue, Id, Layout, Response, Slider, Ui, UiBuilder, Vec2};
 
 use super::{clipboard, timeline};
 use crate::app::preferences::Units;
+use crate::scene::Strokes;
 use crate::scene::expression::evaluate;
 use crate::scene::param::{ChoiceInfo, Colour, FileName, Info, Unit, label};
 
@@ -333,6 +334,20 @@ pub(super) fn colour(ui: &mut Ui, key: &str, info: &Info<Colour>, value: &mut Co
             changed |= response.changed();
         }
         changed
+    });
+    result.settle(value, &info.default)
+}
+
+/// A row for what was painted: how much it is.
+pub(super) fn strokes(ui: &mut Ui, key: &str, info: &Info<Strokes>, value: &mut Strokes) -> bool {
+    let help = Help { key, doc: info.doc, range: None, default: "none".to_owned(), can_move: false };
+    let result = frame(ui, &info.label(), &help, *value != info.default, |ui| {
+        let response = match value.0.len() {
+            0 => ui.weak("none: P paints"),
+            count => ui.label(format!("{count}, of {} dabs", value.dabs())),
+        };
+        name(ui, &response, &info.label(), key);
+        false
     });
     result.settle(value, &info.default)
 }

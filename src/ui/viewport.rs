@@ -3,6 +3,7 @@
 use egui::{Align2, Color32, FontId, PointerButton, Pos2, Rect, Sense, Stroke, Ui, Vec2};
 
 use super::inspector::InspectorState;
+use super::paint::PaintState;
 use super::snapshots::{self, Beside, SnapshotState};
 use super::truth::{Comparison, TruthState};
 use crate::app::document::Document;
@@ -113,7 +114,7 @@ impl ViewportState {
 pub(super) fn show(
     ui: &mut Ui,
     state: &mut ViewportState,
-    (truth, snapshots, inspector): (&mut TruthState, &mut SnapshotState, &mut InspectorState),
+    (truth, snapshots, inspector, paint): (&mut TruthState, &mut SnapshotState, &mut InspectorState, &mut PaintState),
     (document, habit): (&Document, Habit),
 ) {
     let rect = ui.available_rect_before_wrap();
@@ -162,6 +163,10 @@ pub(super) fn show(
                 super::guides::paint(&painter, whole, &document.preset().scene);
             }
             super::inspector::mark(&painter, place, inspector);
+            if is_whole && !state.is_choosing {
+                let shown = (place, state.region.is_none());
+                super::paint::over_picture(ui, (&response, shown), &document.preset().scene, paint);
+            }
         }
         None => {
             let font = FontId::proportional(16.0);

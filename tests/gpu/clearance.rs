@@ -2,8 +2,13 @@
 
 use glam::{Vec3, Vec4};
 use nephoscope::gpu::{ProgramKey, Texture};
+use nephoscope::render::tables::TableKind;
+use nephoscope::render::uniforms::map_place;
+use nephoscope::scene::builtin::BUILTINS;
+use nephoscope::scene::{Output, Quality};
 
 use crate::common::field::{Bound, Field, evaluated, linear_repeat, run, view_of};
+use crate::common::sky::{frame, renderer};
 use crate::common::slab::{FLAT, March, PRODUCT, PROFILE, THESIS, noisy_layer, of_octaves};
 use crate::common::{Case, Random, bits3, gpu};
 
@@ -84,4 +89,39 @@ fn no_cloud_stands_where_the_map_promises_clear_air() {
             assert!(beyond > near, "models {models:?}, {coverage}: cloud is far from every way ({beyond} are near)");
         }
     }
+}
+
+#[test]
+fn most_of_the_clear_air_of_fair_weather_is_skipped() {
+    let found = BUILTINS.iter().find(|builtin| builtin.name == "fair_weather").expect("a built-in sky");
+    let scene = found.preset().expect("it is sound").scene;
+    let layer = &scene.layers[0];
+    let quality = Quality::default();
+    let frame = frame(&scene, &quality, [32, 18], Output::Display);
+    let mut renderer = renderer();
+    let ways = renderer.table(&frame, TableKind::ClearWays).expect("they are made").expect("the sky has a map");
+    let cells = [128, 16, 128];
+    assert_eq!(ways.size, [cells[0], cells[1] * cells[2]], "slices from north to south");
+    let mut random = Random::new(91);
+    let (mut clear, mut skipped) = (0, 0);
+    while clear < 400 {
+        let size_m = scene.weather.size_m;
+        let place =
+            [random.between(0.0, size_m), random.between(layer.base_m, layer.top_m), random.between(0.0, size_m)];
+        let probe = renderer.probe(&frame, place).expect("it can be looked at");
+        let Some(probe) = probe else { continue };
+        if probe.extinction_per_m > 0.0 {
+            continue;
+        }
+        clear += 1;
+        let tiles = map_place(&scene, layer, place.map(f64::from), 0.0);
+        let h = (place[1] - layer.base_m) / (layer.top_m - layer.base_m);
+        let at = [tiles.x - tiles.x.floor(), f64::from(h), tiles.y - tiles.y.floor()];
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "indices of cells")]
+        let [x, y, z] = std::array::from_fn(|axis| ((at[axis] * f64::from(cells[axis])) as u32).min(cells[axis] - 1));
+        let index = (z * cells[1] + y) * cells[0] + x;
+        skipped += usize::from(ways.rgba[index as usize][0] > 0.0);
+    }
+    println!("{skipped} of {clear} clear places lie in cells that are crossed at once");
+    assert!(skipped * 10 >= clear * 6, "{skipped} of {clear}");
 }

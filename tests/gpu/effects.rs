@@ -9,8 +9,8 @@ use nephoscope::plan::{Effect, Forced, FramePlan, Need};
 use nephoscope::render::{programs, shaders::TABLE};
 use nephoscope::scene::builtin::BUILTINS;
 use nephoscope::scene::{
-    DensityModel, DomainKind, FieldOfViewAxis, MapEdge, MapSource, Output, PhaseKind, Quality, Scene, Shape, ShapeRole,
-    UpdateFraction,
+    Brush, CloudKind, DensityModel, DomainKind, FieldOfViewAxis, MapEdge, MapLayer, MapSource, Output, PhaseKind,
+    Quality, Scene, Shape, ShapeRole, Stroke, Strokes, UpdateFraction,
 };
 
 use crate::common::sky::{frame, quick, renderer};
@@ -273,6 +273,28 @@ fn scenes(effect: Effect) -> Example {
         ),
         Effect::Baked => example(boxed, base, &[], false),
         Effect::WeatherMap => example(base, |s| s.scene.layers.clear(), &[], false),
+        Effect::Painting => example(
+            |s| {
+                let dabs = (0..40).map(|i| [0.1 * (i % 8) as f32, 0.2 * (i / 8) as f32]).collect();
+                let stroke = Stroke {
+                    brush: Brush::Erase,
+                    kind: CloudKind::Cumulus,
+                    radius: 0.2,
+                    strength: 1.0,
+                    softness: 0.5,
+                    amount: 1.0,
+                    dabs,
+                };
+                let strokes = Strokes(vec![std::sync::Arc::new(stroke)]);
+                s.scene.weather.layers.push(MapLayer { source: MapSource::Painted, strokes, ..MapLayer::default() });
+            },
+            |s| {
+                let unpainted = MapLayer { source: MapSource::Painted, ..MapLayer::default() };
+                s.scene.weather.layers.push(unpainted);
+            },
+            &[base],
+            true,
+        ),
         Effect::Detail => {
             const OFF: Change = |s| s.all_layers(|layer| layer.detail_strength = 0.0);
             example(base, OFF, &[OFF], true)

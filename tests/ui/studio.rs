@@ -479,3 +479,33 @@ fn a_genus_comes_by_its_name_and_says_what_its_water_does() {
     editor.harness.run();
     assert_eq!(editor.scene().layers.len(), 1, "one step");
 }
+
+#[test]
+fn the_brush_touches_where_the_mouse_is_dragged_while_it_is_on() {
+    let mut editor = Editor::new();
+    editor.harness.state_mut().ui.viewport.picture = Some(picture(1));
+    editor.harness.run();
+    let rect = editor.harness.state().ui.viewport.rect;
+    let at = |u: f32, v: f32| rect.min + egui::vec2(u * rect.width(), v * rect.height());
+    let stroke = |editor: &mut Editor| {
+        editor.harness.hover_at(at(0.3, 0.5));
+        editor.harness.drag_at(at(0.3, 0.5));
+        editor.harness.step();
+        editor.harness.hover_at(at(0.5, 0.4));
+        editor.harness.step();
+        editor.harness.drop_at(at(0.5, 0.4));
+        editor.harness.run();
+    };
+    stroke(&mut editor);
+    assert!(editor.harness.state().ui.paint.touches.is_empty(), "not now");
+    editor.press(egui::Key::P);
+    assert!(editor.has_label("Brush"), "its controls");
+    stroke(&mut editor);
+    let touches = std::mem::take(&mut editor.harness.state_mut().ui.paint.touches);
+    let begun = touches.iter().filter(|touch| touch.begins).count();
+    assert!(begun == 1 && touches.len() >= 2 && touches[0].begins, "{touches:?}");
+    let last = touches.last().expect("there are two").at;
+    assert!((last[0] - 0.5).abs() < 0.1 && (last[1] - 0.4).abs() < 0.2, "{touches:?}");
+    editor.press(egui::Key::I);
+    assert!(!editor.harness.state().ui.paint.is_on, "a click cannot do both");
+}

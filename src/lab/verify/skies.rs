@@ -7,8 +7,8 @@ use crate::render::Renderer;
 use crate::scene::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params as _, Visitor};
 use crate::scene::random::{Stream, between};
 use crate::scene::{
-    BodyForm, CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapLayer, MapSource, Output, PhaseKind, Quality,
-    Scene,
+    BodyForm, CloudLayer, DensityModel, DomainKind, Frame, MapBlend, MapEdge, MapLayer, MapSource, Output, PhaseKind,
+    Quality, Scene, ShapeRole,
 };
 
 /// Width and height of the pictures.
@@ -158,6 +158,16 @@ fn tame(scene: &mut Scene, quality: &mut Quality, own: &mut Stream) {
     scene.domain.kind = if scene.domain.kind == DomainKind::Box { DomainKind::Shell } else { scene.domain.kind };
     for map in &mut scene.weather.layers {
         (map.contrast, map.small_share, map.cumulus) = (MapLayer::default().contrast, 0.5, 1.0);
+        (map.blend, map.opacity) = (MapBlend::Densest, 1.0);
+    }
+    // Shapes neither hide the view nor fill it.
+    for shape in &mut scene.shapes {
+        let far = if shape.role == ShapeRole::Solid { 0.2 } else { 1.0 };
+        for side in [&mut shape.width_m, &mut shape.length_m, &mut shape.tall_m] {
+            *side = (*side * 0.02 * far).min(2000.0);
+        }
+        (shape.east_m, shape.south_m) = (shape.east_m * 0.03, -2000.0 - 0.03 * shape.south_m.abs());
+        (shape.height_m, shape.blend_m) = (0.15 * shape.height_m.abs(), 0.1 * shape.blend_m);
     }
     for (index, layer) in scene.layers.iter_mut().enumerate() {
         layer.enabled = true;
@@ -181,7 +191,7 @@ fn tame(scene: &mut Scene, quality: &mut Quality, own: &mut Stream) {
             (layer.edge_softness, layer.shape_strength) = (edge_softness, shape_strength);
             layer.detail_strength = layer.detail_strength.min(detail_strength);
             layer.sharpness = layer.sharpness.max(0.5);
-            if matches!(layer.model, DensityModel::Texture | DensityModel::Product) {
+            if !matches!(layer.model, DensityModel::Profile | DensityModel::Thesis | DensityModel::Uniform) {
                 layer.model = DensityModel::Profile;
             }
         }

@@ -23,21 +23,38 @@ fn wrapped(tiles: f64) -> f32 {
 fn map_from_world(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) -> Vec4 {
     let weather = &scene.weather;
     let size_m = f64::from(weather.size_m) * f64::from(layer.map_scale);
-    let is_generated = weather.layers.iter().all(|map| map.source.is_generated());
-    let drift = if weather.moves && is_generated {
+    let tiles = map_tiles(scene, layer, DVec2::new(eye.position.x, eye.position.z), time_secs);
+    let per_metre = (1.0 / size_m) as f32;
+    match weather.edge {
+        MapEdge::Repeat => Vec4::new(wrapped(tiles.x), wrapped(tiles.y), per_metre, 0.0),
+        MapEdge::Clamp | MapEdge::Clear => Vec4::new(tiles.x as f32, tiles.y as f32, per_metre, 0.0),
+    }
+}
+
+/// Where a place at the base of a layer lies on the weather map at a time, in edges of the map from its corner.
+fn map_tiles(scene: &Scene, layer: &CloudLayer, place_m: DVec2, time_secs: f64) -> DVec2 {
+    let weather = &scene.weather;
+    let drift = if weather.moves && weather.layers.iter().all(|map| map.source.drifts()) {
         wind_mps(&scene.wind) * time_secs * f64::from(layer.wind_scale)
     } else {
         DVec2::ZERO
     };
     let shift = DVec2::new(layer.map_east_m.into(), layer.map_south_m.into());
-    let here = DVec2::new(eye.position.x, eye.position.z) - drift - shift;
-    let tiles = combed(&scene.wind, layer, here) / size_m;
-    let per_metre = (1.0 / size_m) as f32;
+    let tiles = combed(&scene.wind, layer, place_m - drift - shift) / f64::from(weather.size_m * layer.map_scale);
     match weather.edge {
-        MapEdge::Repeat => Vec4::new(wrapped(tiles.x), wrapped(tiles.y), per_metre, 0.0),
+        MapEdge::Repeat => tiles,
         // A map that ends lies with its middle on the world's origin.
-        MapEdge::Clamp | MapEdge::Clear => Vec4::new((tiles.x + 0.5) as f32, (tiles.y + 0.5) as f32, per_metre, 0.0),
+        MapEdge::Clamp | MapEdge::Clear => tiles + 0.5,
     }
+}
+
+/// Where a place in a layer lies on the weather map at a time, in edges of the map from its corner: twin of `map_uv` in
+/// `pass/cloud_field.wgsl`, from metres east and south of the world's origin and above sea level.
+pub fn map_place(scene: &Scene, layer: &CloudLayer, [east, up, south]: [f64; 3], time_secs: f64) -> DVec2 {
+    let thickness_m = f64::from((layer.top_m - layer.base_m).max(1.0));
+    let h = ((up - f64::from(layer.base_m)) / thickness_m).clamp(0.0, 1.0);
+    let downwind = wind_mps(&scene.wind).normalize_or_zero() * f64::from(layer.lean_m);
+    map_tiles(scene, layer, DVec2::new(east, south) - downwind * h * h, time_secs)
 }
 
 /// What is drawn out along the wind, pressed together again: twin of `combed` in `pass/cloud_field.wgsl`.

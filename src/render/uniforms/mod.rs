@@ -14,6 +14,7 @@ pub mod scene;
 mod shapes;
 
 pub(super) use camera::{Eye, camera_uniforms};
+pub use clouds::map_place;
 pub(crate) use clouds::wind_mps;
 pub(super) use clouds::{field_uniforms, plain_sky, scene_uniforms};
 pub(super) use ground::ground_uniforms;

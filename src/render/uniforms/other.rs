@@ -1,6 +1,6 @@
 //! The structs of the smaller passes.
 
-use glam::{IVec2, Vec2, Vec3, Vec4};
+use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 
 use crate::gpu_struct;
 
@@ -145,14 +145,38 @@ gpu_struct! {
         pub list: [ShapeUniforms; 64],
     }
 
+    /// Dabs of one stroke on the weather map.
+    pub struct PaintUniforms {
+        /// What a texel becomes.
+        pub goal: Vec4,
+        /// Whether clouds become it, and how they vary.
+        pub reaches: Vec2,
+        /// The first texel that they reach; it may lie beyond the map's edge.
+        pub first: IVec2,
+        /// How many texels they reach, across and down.
+        pub extent: UVec2,
+        /// Radius of a dab, in edges of the map.
+        pub radius: f32,
+        /// Share of the radius over which it fades.
+        pub softness: f32,
+        /// How far one dab goes.
+        pub strength: f32,
+        /// How many there are.
+        pub count: u32,
+        /// Texels along an edge of the map.
+        pub side: u32,
+        /// 1 if they take paint away.
+        pub restores: u32,
+    }
+
     /// How two states of a map join.
     pub struct BlendUniforms {
         /// Share of the later one.
         pub share: f32,
-        /// Keeps the size a multiple of 16 bytes.
-        pub pad0: f32,
-        /// Keeps the size a multiple of 16 bytes.
-        pub pad1: f32,
+        /// How the layer joins those below it.
+        pub mode: u32,
+        /// How much of it counts.
+        pub opacity: f32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad2: f32,
     }

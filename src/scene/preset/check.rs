@@ -2,6 +2,7 @@
 
 use super::super::bounds::{Fault, colour_fault, count_fault, float_fault};
 use super::super::nearest::did_you_mean;
+use super::super::paint::Strokes;
 use super::super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor};
 use super::locate::{Kind, Node};
 
@@ -165,6 +166,13 @@ impl Visitor for Check<'_> {
         let Some(node) = self.child(info.name) else { return };
         if node.kind != Kind::Text {
             self.wrong_type(node, self.key(info.name), "a file name in quotes");
+        }
+    }
+
+    fn strokes(&mut self, info: &Info<Strokes>, _: &mut Strokes) {
+        let Some(node) = self.child(info.name) else { return };
+        if let Err(error) = ron::from_str::<Strokes>(&self.text[node.span.clone()]) {
+            self.wrong_type(node, self.key(info.name), format!("strokes of the brush ({})", error.code));
         }
     }
 

@@ -1,5 +1,6 @@
 //! Writes parameters as RON, leaving out what has its default value.
 
+use super::super::paint::Strokes;
 use super::super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Visitor};
 
 /// The fields that differ from their defaults, one a line, `depth` levels in; empty when none does.
@@ -74,6 +75,17 @@ impl Visitor for Writer {
 
     fn file(&mut self, info: &Info<FileName>, value: &mut FileName) {
         self.field(info, value, quoted(&value.0));
+    }
+
+    fn strokes(&mut self, info: &Info<Strokes>, value: &mut Strokes) {
+        if *value == info.default {
+            return;
+        }
+        self.line(&format!("{}: [", info.name));
+        for stroke in &value.0 {
+            self.line(&format!("    {},", quoted(&stroke.to_string())));
+        }
+        self.line("],");
     }
 
     fn group(&mut self, info: &GroupInfo, children: &mut dyn FnMut(&mut dyn Visitor)) {

@@ -1,0 +1,177 @@
+//! From what the mouse did over the picture to strokes on the weather map.
+
+use std::sync::Arc;
+
+use glam::{DVec2, Vec3};
+
+use crate::render::uniforms::map_place;
+use crate::scene::{MAX_DABS, MAX_LAYERS, MapEdge, MapLayer, MapSource, Scene, Stroke};
+use crate::ui::PaintState;
+
+/// Dabs lie so many radii apart.
+const SPACING: f64 = 0.25;
+
+/// Why nothing was painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(super) enum BrushError {
+    /// No layer is where the map says.
+    #[error("No layer is placed by the weather map, so there is nothing to paint; choose another density model")]
+    Mapless,
+    /// The list of map layers is full.
+    #[error("The weather map has {MAX_LAYERS} layers already; remove one, and painting gets one of its own")]
+    Full,
+    /// Too many dabs.
+    #[error("{MAX_DABS} dabs are painted already; export the weather map and use it as an image to go on")]
+    Worn,
+}
+
+/// A stroke that is under way.
+#[derive(Clone, Debug)]
+pub(super) struct UnderWay {
+    /// Height above the sea of what was first touched.
+    pub(super) height_m: f32,
+    layer: usize,
+    map: usize,
+    /// The last dab, not wrapped into the map.
+    last: Option<DVec2>,
+}
+
+impl UnderWay {
+    /// Begins a stroke at a height in a scene, which gets a painted layer on top of its map if it has none there.
+    pub(super) fn begin(scene: &mut Scene, height_m: Option<f32>, brush: &PaintState) -> Result<Self, BrushError> {
+        let layers: Vec<_> = scene.numbered_layers().filter(|(_, layer)| layer.reads_map()).collect();
+        let at_height = |height: f32| layers.iter().find(|(_, layer)| (layer.base_m..=layer.top_m).contains(&height));
+        let found = height_m.and_then(at_height).or(layers.first()).ok_or(BrushError::Mapless)?;
+        let (layer, base_m, top_m) = (found.0, found.1.base_m, found.1.top_m);
+        let scale_m = scene.weather.size_m * found.1.map_scale;
+        let maps = &mut scene.weather.layers;
+        if maps.last().is_none_or(|map| map.source != MapSource::Painted) {
+            if maps.len() >= MAX_LAYERS {
+                return Err(BrushError::Full);
+            }
+            maps.push(MapLayer { source: MapSource::Painted, ..MapLayer::default() });
+        }
+        let map = maps.len() - 1;
+        let strength = 1.0 - (1.0 - brush.strength.clamp(0.0, 1.0)).powf(SPACING as f32);
+        let stroke = Stroke {
+            brush: brush.brush,
+            kind: brush.kind,
+            radius: (brush.radius_m / scale_m).clamp(1e-3, 0.5),
+            strength,
+            softness: brush.softness,
+            amount: brush.amount,
+            dabs: Vec::new(),
+        };
+        maps[map].strokes.0.push(Arc::new(stroke));
+        let height_m = height_m.unwrap_or(base_m).clamp(base_m, top_m);
+        Ok(Self { height_m, layer, map, last: None })
+    }
+
+    /// The layer of the map that it is on.
+    pub(super) fn map(&self) -> usize {
+        self.map
+    }
+
+    /// Draws the stroke on to where a direction from the eye meets its height; dabs lie evenly on the way.
+    #[allow(clippy::cast_possible_truncation, reason = "places on the map, within it")]
+    pub(super) fn touch(&mut self, scene: &mut Scene, towards: Vec3, time_secs: f64) -> Result<(), BrushError> {
+        let Some(there) = scene.place_at_height(towards, self.height_m) else { return Ok(()) };
+        let camera = &scene.camera;
+        let [east, south] =
+            [f64::from(camera.east_m) + f64::from(there.x), f64::from(camera.south_m) + f64::from(there.z)];
+        let Some(layer) = scene.layers.get(self.layer) else { return Ok(()) };
+        let place = map_place(scene, layer, [east, f64::from(self.height_m), south], time_secs);
+        let is_endless = scene.weather.edge == MapEdge::Repeat;
+        let Some(map) = scene.weather.layers.get_mut(self.map) else { return Ok(()) };
+        if map.strokes.dabs() >= MAX_DABS {
+            return Err(BrushError::Worn);
+        }
+        let Some(stroke) = map.strokes.0.last_mut().map(Arc::make_mut) else { return Ok(()) };
+        let spacing = SPACING * f64::from(stroke.radius);
+        let mut dab = |place: DVec2| {
+            let is_on_map = place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all();
+            if is_endless || is_on_map {
+                let wrapped = if is_endless { place - place.floor() } else { place };
+                stroke.dabs.push([wrapped.x as f32, wrapped.y as f32]);
+            }
+        };
+        let Some(last) = self.last else {
+            dab(place);
+            self.last = Some(place);
+            return Ok(());
+        };
+        // A slip over the horizon is no line across the whole map.
+        let way = place - last;
+        if way.length() > 2.0 {
+            self.last = Some(place);
+            return Ok(());
+        }
+        let count = (way.length() / spacing).floor();
+        let mut at = last;
+        for _ in 0..count as u32 {
+            at += way.normalize_or_zero() * spacing;
+            dab(at);
+        }
+        self.last = Some(at);
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Brush, DensityModel};
+
+    fn painted(touches: &[Vec3]) -> Scene {
+        let mut scene = Scene::default();
+        let brush = PaintState { brush: Brush::Erase, radius_m: 240.0, ..PaintState::default() };
+        let mut stroke = UnderWay::begin(&mut scene, Some(1500.0), &brush).expect("the sky has a map");
+        for towards in touches {
+            stroke.touch(&mut scene, *towards, 0.0).expect("there is room");
+        }
+        scene
+    }
+
+    #[test]
+    fn dabs_lie_evenly_whatever_the_mouse_does() {
+        let straight = [Vec3::new(0.0, 0.5, -1.0).normalize(), Vec3::new(1.0, 0.5, -1.0).normalize()];
+        let slow: Vec<Vec3> = (0..=100).map(|i| straight[0].lerp(straight[1], i as f32 / 100.0).normalize()).collect();
+        for touches in [&straight[..], &slow] {
+            let scene = painted(touches);
+            let map = scene.weather.layers.last().expect("a painted one");
+            let dabs = &map.strokes.0[0].dabs;
+            assert_eq!((map.source, map.strokes.0.len()), (MapSource::Painted, 1));
+            assert!(dabs.len() > 20, "{dabs:?}");
+            for pair in dabs.windows(2) {
+                let apart = [0, 1].map(|axis| pair[1][axis] - pair[0][axis]).map(|apart| apart - apart.round());
+                let metres = apart[0].hypot(apart[1]) * scene.weather.size_m;
+                assert!((metres - 60.0).abs() < 1.0, "{metres} m apart");
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_painted_is_said() {
+        let brush = PaintState::default();
+        let mut mapless = Scene::default();
+        mapless.layers[0].model = DensityModel::Shapes;
+        assert_eq!(UnderWay::begin(&mut mapless, None, &brush).err(), Some(BrushError::Mapless));
+        let mut full = Scene::default();
+        full.weather.layers.resize(MAX_LAYERS, MapLayer::default());
+        assert_eq!(UnderWay::begin(&mut full, None, &brush).err(), Some(BrushError::Full));
+        let down = painted(&[Vec3::NEG_Y]);
+        assert_eq!(down.weather.layers[1].strokes.dabs(), 0, "nothing is up there when looking down from below");
+    }
+
+    #[test]
+    fn the_painting_is_in_the_preset() {
+        use crate::scene::Preset;
+        let scene = painted(&[Vec3::new(0.0, 0.5, -1.0).normalize(), Vec3::new(0.4, 0.5, -1.0).normalize()]);
+        let preset = Preset::new("Painted", scene);
+        let again = Preset::from_ron(&preset.to_ron(), "painted").unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(again, preset);
+        let broken = preset.to_ron().replacen("radius 0.01", "radius -3", 1);
+        let error = Preset::from_ron(&broken, "painted.ron").expect_err("a radius below 0").to_string();
+        assert!(error.contains("weather.layers.1.strokes") && error.contains("painted.ron:"), "{error}");
+    }
+}

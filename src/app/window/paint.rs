@@ -1,0 +1,66 @@
+//! Painting over the picture.
+
+use std::time::Duration;
+
+use super::App;
+use crate::app::Action;
+use crate::app::brush::UnderWay;
+
+impl App {
+    /// Paints where the brush has touched the picture since the last time. Where a stroke begins, the clouds themselves tell how
+    /// high they are there.
+    pub(super) fn paint(&mut self) {
+        let Some(live) = &mut self.live else { return };
+        let state = &mut self.session.ui.paint;
+        if state.touches.is_empty() {
+            return;
+        }
+        let document = &mut self.session.document;
+        let mut scene = document.preset().scene.clone();
+        let (mut done, mut map) = (0, None);
+        let mut result = Ok(());
+        for touch in &state.touches {
+            if touch.begins || self.session.stroke.is_none() {
+                let height_m = match live.viewport.pick(touch.at) {
+                    // A shader is being compiled: these touches wait.
+                    Ok(None) => break,
+                    Ok(Some(picked)) => picked.position_m.map(|[_, height, _]| height),
+                    Err(error) => {
+                        self.session.ui.toasts.error(error);
+                        state.touches.clear();
+                        return;
+                    }
+                };
+                match UnderWay::begin(&mut scene, height_m, state) {
+                    Ok(stroke) => self.session.stroke = Some(stroke),
+                    Err(error) => {
+                        result = Err(error);
+                        break;
+                    }
+                }
+            }
+            let (Some(stroke), Some(towards)) = (&mut self.session.stroke, live.viewport.towards(touch.at)) else {
+                break;
+            };
+            result = stroke.touch(&mut scene, towards, document.time_secs());
+            map = Some(stroke.map());
+            state.height_m = Some(stroke.height_m);
+            done += 1;
+            if result.is_err() {
+                break;
+            }
+        }
+        if let Err(error) = result {
+            self.session.ui.toasts.error(error);
+            (done, self.session.stroke) = (state.touches.len(), None);
+        }
+        state.touches.drain(..done);
+        if let Some(map) = map {
+            let key = format!("weather.layers.{map}.strokes");
+            document.apply(&Action::EditScene { key, scene: Box::new(scene) });
+        }
+        if done > 0 {
+            live.draw_within(Duration::ZERO);
+        }
+    }
+}
