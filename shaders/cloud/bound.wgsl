@@ -27,7 +27,14 @@ fn greatest_profile(body: f32, possible: PossibleTypes, layer: LayerUniforms, lo
   let spread = layer.anvil * smoothstep(0.55, 0.85, high);
   let top = greatest_top(body, possible, layer);
   let base = smoothstep(0.0, layer.base_ramp, high);
-  let crown = 1.0 - smoothstep(min(0.62 + 0.3 * spread, 0.9), 1.0, low / top);
+  // Shoulders are lowest where all is cumulus; where the map has nothing and coverage makes cloud of it, it has no type.
+  var bias = layer.body_bias;
+#if FRONT
+  bias = max(bias, layer.body_bias_beyond);
+#endif
+  let is_cumulus = bias <= 0.0 && possible.types.y + possible.types.z <= 0.0;
+  let shoulder = select(FLAT_SHOULDER, CUMULUS_SHOULDER, is_cumulus) + 0.3 * spread;
+  let crown = 1.0 - smoothstep(min(shoulder, 0.9), 1.0, low / top);
   return mix(body, sqrt(body), spread) * base * sqrt(max(crown, 0.0));
 }
 

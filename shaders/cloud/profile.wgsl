@@ -19,13 +19,17 @@ fn top_height(weather: Weather, layer: LayerUniforms) -> f32 {
   return max(dot(weather.types, vec3f(towering, 0.30 * flat, 0.55 * flat)), 0.02);
 }
 
+// Where clouds begin to grow narrower upwards, as a part of their height.
+const FLAT_SHOULDER: f32 = 0.62;
+const CUMULUS_SHOULDER: f32 = 0.25;
+
 // How much cloud the map allows at a height, 0..1.
 fn height_profile(weather: Weather, layer: LayerUniforms, h: f32) -> f32 {
   let spread = layer.anvil * smoothstep(0.55, 0.85, h);
   let body = mix(weather.body, sqrt(weather.body), spread);
   let hh = h / top_height(weather, layer);
   let base = smoothstep(0.0, layer.base_ramp, h);
-  let shoulder = mix(0.62, 0.25, weather.types.x) + 0.3 * spread;
+  let shoulder = mix(FLAT_SHOULDER, CUMULUS_SHOULDER, weather.types.x) + 0.3 * spread;
   let crown = 1.0 - smoothstep(min(shoulder, 0.9), 1.0, hh);
   return body * base * sqrt(max(crown, 0.0));
 }

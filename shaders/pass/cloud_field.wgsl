@@ -36,7 +36,7 @@ override LAYERS: u32 = 1u;
 @group(1) @binding(1) var weather_map: texture_2d<f32>;
 #endif
 @group(1) @binding(2) var linear_repeat: sampler;
-#if PROFILE
+#if BILLOWS
 @group(1) @binding(3) var shape_noise: texture_3d<f32>;
 #else
 #if TEXTURE
@@ -238,7 +238,9 @@ fn profile_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
   }
   return formed_at(layer, p, h, profile, weather, reading);
 }
+#endif
 
+#if BILLOWS
 // What billows and erosion make of a profile.
 fn formed_at(layer: LayerUniforms, p: vec3f, h: f32, profile: f32, weather: Weather, reading: Reading) -> f32 {
   clear_way = 0.0;

@@ -38,6 +38,7 @@ pub(super) struct UnderWay {
 
 impl UnderWay {
     /// Begins a stroke at a height in a scene, which gets a painted layer on top of its map if it has none there.
+    #[allow(clippy::cast_possible_truncation, reason = "a constant below 1")]
     pub(super) fn begin(scene: &mut Scene, height_m: Option<f32>, brush: &PaintState) -> Result<Self, BrushError> {
         let layers: Vec<_> = scene.numbered_layers().filter(|(_, layer)| layer.reads_map()).collect();
         let at_height = |height: f32| layers.iter().find(|(_, layer)| (layer.base_m..=layer.top_m).contains(&height));

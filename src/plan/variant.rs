@@ -93,7 +93,8 @@ pub struct MarchVariant {
 
 impl MarchVariant {
     /// Every flag of the density field.
-    const FIELD_FLAGS: [&'static str; 13] = [
+    const FIELD_FLAGS: [&'static str; 14] = [
+        "BILLOWS",
         "PROFILE",
         "THESIS",
         "UNIFORM",
@@ -118,38 +119,7 @@ impl MarchVariant {
             return None;
         }
         let any = |test: fn(&CloudLayer) -> bool| layers.iter().any(|layer| test(layer));
-        let has = |model: DensityModel| layers.iter().any(|layer| layer.model == model);
-        let profile = why.needed_if(
-            [DensityModel::Profile, DensityModel::Automaton, DensityModel::Shapes].into_iter().any(has),
-            Effect::Profile,
-            "some layer has it, or takes its billows",
-            "no layer has it",
-        );
-        let mut model = |effect: Effect, which: DensityModel| {
-            why.needed_if(has(which), effect, "some layer has it", "no layer has it")
-        };
-        let thesis = model(Effect::Thesis, DensityModel::Thesis);
-        let uniform = model(Effect::Uniform, DensityModel::Uniform);
-        let texture = model(Effect::Texture, DensityModel::Texture);
-        let product = model(Effect::Product, DensityModel::Product);
-        let automaton = model(Effect::Automaton, DensityModel::Automaton);
-        let shapes = model(Effect::Shapes, DensityModel::Shapes);
-        let is_sheared = |l: &CloudLayer| l.model == DensityModel::Automaton && l.automaton.shear != 0.0;
-        why.unless(
-            Effect::Shear,
-            &[
-                (!automaton, Need::Impossible, "no layer is an automaton"),
-                (!layers.iter().any(|layer| is_sheared(layer)), Need::Needless, "its shear is 0"),
-            ],
-            "its tops drift from its bases",
-        );
-        let grid = has(DensityModel::Grid);
-        why.unless(Effect::Grid, &[(!grid, Need::Impossible, "no layer names a file")], "some layer has it");
-        why.unless(
-            Effect::ShapeNoise,
-            &[(!profile && !texture, Need::Impossible, "no model reads it")],
-            "some model reads it",
-        );
+        let Models { profile, thesis, uniform, texture, product, automaton, shapes, grid } = Models::of(&layers, why);
         let has_heights = scene.weather.layers.iter().any(|map| map.source != MapSource::Generated);
         let baked = baked(frame, why);
         let reads_map = any(CloudLayer::reads_map) || profile || thesis || uniform || texture || product || automaton;
@@ -321,7 +291,12 @@ impl MarchVariant {
 
     /// Whether some layer reads the large noise.
     pub fn reads_shape(self) -> bool {
-        self.profile || self.texture
+        self.has_billows() || self.texture
+    }
+
+    /// Whether some layer's clouds are shaped by billows and erosion.
+    fn has_billows(self) -> bool {
+        self.profile || self.automaton || self.shapes
     }
 
     /// What programs read: the baked voxels alone, where there are any.
@@ -371,6 +346,7 @@ impl MarchVariant {
     pub fn field_flags(self) -> impl Iterator<Item = &'static str> {
         let seen = self.seen();
         let on = [
+            seen.has_billows(),
             seen.profile,
             seen.thesis,
             seen.uniform,
@@ -411,6 +387,52 @@ impl MarchVariant {
             DomainKind::Flat => 1,
             DomainKind::Box => 2,
         }
+    }
+}
+
+/// Which density models some layer has, or was forced to be compiled for.
+#[derive(Clone, Copy, Debug)]
+struct Models {
+    profile: bool,
+    thesis: bool,
+    uniform: bool,
+    texture: bool,
+    product: bool,
+    automaton: bool,
+    shapes: bool,
+    grid: bool,
+}
+
+impl Models {
+    fn of(layers: &[&CloudLayer], why: &mut Verdicts) -> Self {
+        let has = |model: DensityModel| layers.iter().any(|layer| layer.model == model);
+        let mut model = |effect: Effect, which: DensityModel| {
+            why.needed_if(has(which), effect, "some layer has it", "no layer has it")
+        };
+        let models = Self {
+            profile: model(Effect::Profile, DensityModel::Profile),
+            thesis: model(Effect::Thesis, DensityModel::Thesis),
+            uniform: model(Effect::Uniform, DensityModel::Uniform),
+            texture: model(Effect::Texture, DensityModel::Texture),
+            product: model(Effect::Product, DensityModel::Product),
+            automaton: model(Effect::Automaton, DensityModel::Automaton),
+            shapes: model(Effect::Shapes, DensityModel::Shapes),
+            grid: has(DensityModel::Grid),
+        };
+        let is_sheared = |l: &CloudLayer| l.model == DensityModel::Automaton && l.automaton.shear != 0.0;
+        why.unless(
+            Effect::Shear,
+            &[
+                (!models.automaton, Need::Impossible, "no layer is an automaton"),
+                (!layers.iter().any(|layer| is_sheared(layer)), Need::Needless, "its shear is 0"),
+            ],
+            "its tops drift from its bases",
+        );
+        why.unless(Effect::Grid, &[(!models.grid, Need::Impossible, "no layer names a file")], "some layer has it");
+        let reads_shape = models.profile || models.texture || models.automaton || models.shapes;
+        let reason = "no model reads it";
+        why.unless(Effect::ShapeNoise, &[(!reads_shape, Need::Impossible, reason)], "some model reads it");
+        models
     }
 }
 

@@ -46,6 +46,7 @@ impl Cells {
     }
 
     /// Every cell anew, from its place.
+    #[allow(clippy::cast_possible_truncation, reason = "no more than some million cells")]
     fn anew(&self, cell: impl Fn(IVec3) -> Cell) -> Self {
         let places = (0..self.cells.len() as i32).map(|index| {
             let column = index / self.levels;

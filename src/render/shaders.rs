@@ -17,6 +17,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         "AUTOMATON",
         "BAKED",
         "BELOW",
+        "BILLOWS",
         "CLOUDS",
         "COUNT",
         "CURL",

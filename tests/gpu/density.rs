@@ -241,7 +241,7 @@ fn field_samples(layer: LayerUniforms, places: &[Vec3]) -> Vec<[f32; 4]> {
         ("linear_repeat", wgpu::BindingResource::Sampler(linear_repeat())),
     ]);
     let key = ProgramKey::plain("test/eval_field.wgsl")
-        .with_flags(["PROFILE", "THESIS", "UNIFORM", "PRODUCT", "DETAIL", "CURL"])
+        .with_flags(["BILLOWS", "PROFILE", "THESIS", "UNIFORM", "PRODUCT", "DETAIL", "CURL"])
         .with_constant("DOMAIN", 1);
     run(&key, &bound, [512, u32::try_from(places.len().div_ceil(512)).expect("few"), 1]);
     bytemuck::cast_slice(&readback::buffer(gpu(), &results).expect("it can be read")).to_vec()

@@ -104,7 +104,7 @@ fn noisy(models: &[u32], dir: Vec3) -> March {
     }
     march.layers = u32::try_from(models.len()).expect("few layers");
     (march.jittered, march.mapped) = (true, true);
-    march.flags = vec!["PROFILE", "THESIS", "DETAIL", "CURL"];
+    march.flags = vec!["BILLOWS", "PROFILE", "THESIS", "DETAIL", "CURL"];
     (march.scene.step_m, march.scene.step_growth, march.scene.empty_stride) = (25.0, 0.004, 3.0);
     march.scene.step_depth = 0.3;
     march

@@ -74,7 +74,7 @@ fn the_converged_march_is_of_second_order() {
     march.scene.layers[0].detail_strength = 0.0;
     march.scene.towards_light = towards(0.8, true, 0.0);
     march.scene.light_illuminance = Vec3::splat(4.0 * std::f32::consts::PI);
-    (march.mapped, march.flags) = (true, vec!["PROFILE"]);
+    (march.mapped, march.flags) = (true, vec!["BILLOWS", "PROFILE"]);
     march.spread = 0.4;
     let at = |step: f32, light: u32| march.converged(step, light, 60).0;
     let exact = at(2.0, 256);
@@ -161,7 +161,7 @@ fn furnace(models: &[u32], view: Vec3) -> March {
     }
     march.layers = u32::try_from(models.len()).expect("few layers");
     (march.mapped, march.domain) = (true, FLAT);
-    march.flags = vec!["PROFILE", "THESIS", "DETAIL", "CURL"];
+    march.flags = vec!["BILLOWS", "PROFILE", "THESIS", "DETAIL", "CURL"];
     march
 }
 
@@ -258,7 +258,7 @@ fn majorants(march: &March, cases: &[Case]) -> Vec<[f32; 4]> {
     read.extend(Field::baked().noises());
     read.extend(named(baked_bounds()));
     let key = ProgramKey::plain("test/eval_majorant.wgsl")
-        .with_flags(["PROFILE", "THESIS", "UNIFORM", "PRODUCT", "DETAIL", "CURL"])
+        .with_flags(["BILLOWS", "PROFILE", "THESIS", "UNIFORM", "PRODUCT", "DETAIL", "CURL"])
         .with_constant("DOMAIN", FLAT)
         .with_constant("LAYERS", 1);
     evaluated(&key, &read, cases)

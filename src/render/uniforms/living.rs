@@ -44,7 +44,7 @@ pub fn automaton_uniforms(automaton: &Automaton, shear: Option<&Wind>, generatio
     }
 }
 
-/// Random bits of a run: the finaliser of SplitMix64 (Steele, Lea and Flood 2014).
+/// Random bits of a run: the finaliser of `SplitMix64` (Steele, Lea and Flood 2014).
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bits")]
 fn run_bits(epoch: i64, seed: u32) -> u32 {
     let mut bits = (epoch as u64).wrapping_add(u64::from(seed)).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(seed);
