@@ -13,7 +13,7 @@ use nephoscope::scene::Output;
 use nephoscope::scene::builtin::BUILTINS;
 
 use crate::common::sky::{frame, quick, renderer};
-use scenes::{Example, SIZE, Setup, borders, scenes};
+use scenes::{Change, Example, SIZE, Setup, borders, scenes};
 
 /// All flags and all bindings of the programs a plan may ask for.
 fn traces(plan: &FramePlan) -> (BTreeSet<String>, BTreeSet<String>) {
