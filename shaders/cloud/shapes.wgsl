@@ -2,7 +2,6 @@
 // level, and south of the eye. No distance changes by more than the way between two places: a sphere about a place with its
 // distance as radius holds no surface.
 #import "generated/ShapeUniforms.wgsl"
-#import "generated/ShapesUniforms.wgsl"
 
 const SHAPE_SPHERE: u32 = 0u;
 const SHAPE_ELLIPSOID: u32 = 1u;
@@ -53,31 +52,12 @@ fn blended_least(a: f32, b: f32, blend: f32) -> f32 {
   return min(a, b) - 0.25 * near * near * blend;
 }
 
-// Distance to shapes from the first to before the end, joined one after the other.
-fn joined_distance(p: vec3f, first: u32, end: u32) -> f32 {
-  var distance = NO_SHAPE_M;
-  for (var i = first; i < end; i++) {
-    let shape = shapes.list[i];
-    let own = shape_distance(shape, p);
-    if (shape.join == JOIN_UNION) {
-      distance = blended_least(distance, own, shape.blend_m);
-    } else {
-      let other = select(own, -own, shape.join == JOIN_DIFFERENCE);
-      distance = -blended_least(-distance, -other, shape.blend_m);
-    }
+// A distance to shapes with one more of them.
+fn joined(before: f32, shape: ShapeUniforms, p: vec3f) -> f32 {
+  let own = shape_distance(shape, p);
+  if (shape.join == JOIN_UNION) {
+    return blended_least(before, own, shape.blend_m);
   }
-  return distance;
-}
-
-// What curvature and rounding may add to a distance where heights are measured from a round sea.
-const TRUSTED: f32 = 0.95;
-
-// Distance to clouds.
-fn cloud_shapes_distance(p: vec3f) -> f32 {
-  return joined_distance(p, 0u, shapes.clouds) * TRUSTED;
-}
-
-// Distance to solid things.
-fn solid_shapes_distance(p: vec3f) -> f32 {
-  return joined_distance(p, shapes.clouds, shapes.clouds + shapes.solids) * TRUSTED;
+  let other = select(own, -own, shape.join == JOIN_DIFFERENCE);
+  return -blended_least(-before, -other, shape.blend_m);
 }

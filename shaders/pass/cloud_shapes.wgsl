@@ -1,6 +1,6 @@
 // Clouds that are shapes: how far inside of them a place is stands for the profile of the program's own model.
 #import "cloud/profile.wgsl"
-#import "cloud/shapes.wgsl"
+#import "pass/shapes_distance.wgsl"
 
 @group(1) @binding(23) var<uniform> shapes: ShapesUniforms;
 

@@ -1,6 +1,6 @@
 // Solid things on the ground and in the air: where rays meet them, how they are lit, and what they keep from what is around
 // them (Thomann 2020, sections 4.5 to 4.9).
-#import "cloud/shapes.wgsl"
+#import "pass/shapes_distance.wgsl"
 #import "common/shell.wgsl"
 
 @group(0) @binding(11) var<uniform> shapes: ShapesUniforms;

@@ -1,5 +1,5 @@
 // Evaluates cloud/shapes.wgsl. Case: a = position.
-#import "cloud/shapes.wgsl"
+#import "pass/shapes_distance.wgsl"
 #import "test/eval_io.wgsl"
 
 @group(0) @binding(2) var<storage, read> shapes: ShapesUniforms;

@@ -5,6 +5,7 @@
 //! march up to its last halving of steps, paths up to their noise.
 
 mod hard;
+mod models;
 pub mod skies;
 mod slabs;
 

@@ -185,6 +185,9 @@ effects! {
     Sunshafts ("sunshafts", "Streaks of light in the haze.") {
         flags: ["SHAFTS"], bindings: ["shafts_light"], passes: ["sunshafts"]
     }
+    Glow ("glow", "The artists' glow of thin cloud about the light.") {
+        flags: ["GLOW"], bindings: ["glow"], passes: []
+    }
     Grading ("grading", "The display's contrast and saturation.") {
         flags: ["GRADED"], bindings: [], passes: [], may_differ: 4e-3
     }

@@ -5,7 +5,7 @@ use super::effect::Effect;
 use super::light::{KeyLight, Lighting};
 use super::variant::MarchVariant;
 use super::{GroundPlan, SkyPlan, rows, view};
-use crate::scene::{Frame, Output, Projection, ShapeRole};
+use crate::scene::{Frame, Output, Projection, Scene, ShapeRole};
 
 /// Share of the sun's light below which moonlight in the air is lost in half floats.
 const LOST_IN_DAYLIGHT: f32 = 1e-5;
@@ -69,6 +69,19 @@ pub(super) fn cloud_shadow(
         "lit ground is in view below clouds",
     )
     .then_some(frame.quality.shadow_map_px)
+}
+
+/// Whether thin cloud glows about the light.
+pub(super) fn glow(scene: &Scene, has_clouds: bool, lighting: &Lighting, why: &mut Verdicts) -> bool {
+    why.unless(
+        Effect::Glow,
+        &[
+            (!has_clouds, Need::Impossible, "no cloud is in the picture"),
+            (scene.scattering.glow <= 0.0, Need::Needless, "its strength is 0"),
+            (lighting.key == KeyLight::None, Need::Needless, "neither sun nor moon shines"),
+        ],
+        "the artist wants it",
+    )
 }
 
 /// Samples along streaks of light.

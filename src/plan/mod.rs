@@ -88,6 +88,8 @@ pub struct FramePlan {
     pub temporal: Option<UpdatePattern>,
     /// Samples along streaks of light.
     pub sunshafts: Option<u32>,
+    /// Whether thin cloud glows about the light.
+    pub glow: bool,
     /// Whether targets are float, for a file.
     pub float: bool,
     /// Whether the clouds are written without what lies behind them.
@@ -129,6 +131,7 @@ impl FramePlan {
             if has_clouds { field.marched(frame, (ground.is_some(), is_partial), &lighting, &mut why) } else { field }
         });
         let sunshafts = lights::sunshafts(frame, has_clouds || ground.is_some(), &lighting, &mut why);
+        let glow = lights::glow(scene, has_clouds, &lighting, &mut why);
         let sky = lights::sky(frame, ground.is_some(), march, &lighting, &mut why);
         let display = &scene.display;
         let graded = why.needed_if(
@@ -146,6 +149,7 @@ impl FramePlan {
             cloud_rows,
             temporal,
             sunshafts,
+            glow,
             float: frame.output != Output::Display,
             alone: frame.output == Output::CloudsAlone,
             tone_map: scene.display.tone_map,

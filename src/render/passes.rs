@@ -16,6 +16,7 @@ pub(super) struct FrameBuffers {
     pub(super) plain: Option<wgpu::Buffer>,
     pub(super) shafts: Option<wgpu::Buffer>,
     pub(super) shapes: Option<wgpu::Buffer>,
+    pub(super) glow: Option<wgpu::Buffer>,
 }
 
 impl FrameBuffers {
@@ -26,7 +27,8 @@ impl FrameBuffers {
             ("ground", self.ground.as_entire_binding()),
             ("display", self.display.as_entire_binding()),
         ];
-        let optional = [("plain", &self.plain), ("shafts", &self.shafts), ("shapes", &self.shapes)];
+        let optional =
+            [("plain", &self.plain), ("shafts", &self.shafts), ("shapes", &self.shapes), ("glow", &self.glow)];
         bound.extend(optional.iter().filter_map(|(name, buffer)| Some((*name, buffer.as_ref()?.as_entire_binding()))));
         bound
     }
@@ -117,7 +119,7 @@ fn background_key(plan: &FramePlan, is_open: bool) -> ProgramKey {
 }
 
 pub(super) fn composed_flags(plan: &FramePlan) -> impl Iterator<Item = &'static str> {
-    [("CLOUDS", plan.has_clouds()), ("SHAFTS", plan.sunshafts.is_some())]
+    [("CLOUDS", plan.has_clouds()), ("SHAFTS", plan.sunshafts.is_some()), ("GLOW", plan.glow)]
         .into_iter()
         .filter_map(|(flag, on)| on.then_some(flag))
 }

@@ -199,6 +199,9 @@ pub(super) fn frame_buffers(
             let shafts = uniforms::shaft_uniforms(scene, &lighting, samples);
             context.gpu.uniform("shafts", bytemuck::bytes_of(&shafts))
         }),
+        glow: plan
+            .glow
+            .then(|| context.gpu.uniform("glow", bytemuck::bytes_of(&uniforms::glow_uniforms(scene, &lighting)))),
         shapes: (plan.march.is_some_and(|march| march.shapes) || plan.ground.is_some_and(|ground| ground.solids)).then(
             || {
                 let shapes = uniforms::shapes_uniforms(scene, &lighting, &eye);

@@ -2,8 +2,8 @@
 
 use super::uniforms::air::AirUniforms;
 use super::uniforms::other::{
-    AutomatonUniforms, BlendUniforms, DisplayUniforms, GroundUniforms, MapUniforms, PaintUniforms, PlainUniforms,
-    ReliefUniforms, ShaftUniforms, ShapeUniforms, ShapesUniforms, TruthUniforms,
+    AutomatonUniforms, BlendUniforms, DisplayUniforms, GlowUniforms, GroundUniforms, MapUniforms, PaintUniforms,
+    PlainUniforms, ReliefUniforms, ShaftUniforms, ShapeUniforms, ShapesUniforms, TruthUniforms,
 };
 use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
 use crate::gpu::ShaderTable;
@@ -26,6 +26,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         "EARTH",
         "FLOAT",
         "FRONT",
+        "GLOW",
         "GRADED",
         "GRID",
         "GROUND",
@@ -67,6 +68,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         BlendUniforms::GENERATED,
         CameraUniforms::GENERATED,
         DisplayUniforms::GENERATED,
+        GlowUniforms::GENERATED,
         GroundUniforms::GENERATED,
         LayerUniforms::GENERATED,
         MapUniforms::GENERATED,

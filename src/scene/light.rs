@@ -84,6 +84,12 @@ params! {
         ambient_base_share: f32 = 0.3, 0.0..=1.0, None;
         /// How dense cloud keeps ambient light out of its middle.
         ambient_occlusion: f32 = 0.6, 0.0..=4.0, None;
+        /// Artists' glow of thin cloud about the sun or moon, added to the picture (Thomann 2020, listing 16). 0 leaves it out.
+        glow: f32 = 0.0, 0.0..=4.0, None;
+        /// Angle from the light at which the glow ends.
+        glow_deg: f32 = 25.0, 1.0..=90.0, Degrees;
+        /// How the glow falls off: above 1 it stays wide, below it is narrow.
+        glow_width: f32 = 1.0, 0.1..=8.0, None, logarithmic;
     }
 }
 

@@ -74,6 +74,7 @@ files! {
     "pass/probe.wgsl",
     "pass/shafts_blur.wgsl",
     "pass/shafts_mask.wgsl",
+    "pass/shapes_distance.wgsl",
     "pass/sky_aerial.wgsl",
     "pass/sky_ambient.wgsl",
     "pass/sky_multiscatter.wgsl",

@@ -8,7 +8,9 @@ use nephoscope::render::{meter, probe, programs, shaders::TABLE, truth, watch};
 use nephoscope::scene::builtin::BUILTINS;
 use nephoscope::scene::edit;
 use nephoscope::scene::random::randomise;
-use nephoscope::scene::{DensityModel, DomainKind, Frame, Output, Quality, Scene, ToneMap, UpdateFraction};
+use nephoscope::scene::{
+    DensityModel, DomainKind, Frame, MapLayer, MapSource, Output, Quality, Scene, Strokes, ToneMap, UpdateFraction,
+};
 use nephoscope::shader::{FILES, compose, validate};
 
 #[test]
@@ -23,10 +25,17 @@ fn every_function_file_and_test_shader_is_valid() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
+/// A painted layer of the map.
+fn painted() -> MapLayer {
+    let stroke = "Add Cumulus radius 0.1 strength 1 softness 1 amount 1 at 0.5,0.5".parse().expect("a stroke");
+    let strokes = Strokes(vec![std::sync::Arc::new(stroke)]);
+    MapLayer { source: MapSource::Painted, strokes, ..MapLayer::default() }
+}
+
 type Change = fn(&mut Scene, &mut Quality);
 
 /// Everything the plan may decide, switched one at a time on every preset.
-const CHANGES: [Change; 23] = [
+const CHANGES: [Change; 25] = [
     |_, _| {},
     |scene, _| scene.weather.coverage = 0.0,
     |scene, _| scene.layers.iter_mut().for_each(|layer| layer.model = DensityModel::Profile),
@@ -40,6 +49,8 @@ const CHANGES: [Change; 23] = [
     |scene, _| scene.ground.visible = false,
     |scene, _| (scene.ground.hills_m, scene.ground.mountains_m) = (0.0, 0.0),
     |scene, _| scene.ground.cloud_shadows = 0.0,
+    |scene, _| scene.weather.layers = vec![painted()],
+    |scene, _| scene.weather.layers.push(painted()),
     |scene, _| (scene.sun.elevation_deg, scene.sunshafts.strength) = (-40.0, 1.0),
     |scene, _| (scene.sun.elevation_deg, scene.moon.enabled) = (-40.0, false),
     |scene, _| (scene.sun.elevation_deg, scene.sunshafts.strength, scene.camera.pitch_deg) = (5.0, 1.0, 80.0),

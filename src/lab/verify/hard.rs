@@ -1,7 +1,7 @@
 //! The hard cases of volumetric rendering through the whole program, on whatever driver it runs: each has a symptom
 //! that some renderer has shown, and a figure that says whether this one does.
 
-use super::{Check, VerifyError};
+use super::{Check, VerifyError, models};
 use crate::render::{LinearImage, Renderer};
 use crate::scene::{
     CloudLayer, DensityModel, DomainKind, Frame, MapEdge, Output, Phase, PhaseKind, PlainLight, Projection, Quality,
@@ -11,7 +11,7 @@ use crate::scene::{
 const SIZE: [u32; 2] = [32, 18];
 
 /// What a case found: what was expected, what was measured, and whether that will do.
-struct Finding {
+pub(super) struct Finding {
     expected: String,
     measured: String,
     holds: bool,
@@ -24,7 +24,7 @@ impl Finding {
         Self { expected: format!("{what} at most {limit:.1e}"), measured: format!("{figure:.1e}"), holds }
     }
 
-    fn that(holds: bool, expected: &str, measured: impl Into<String>) -> Self {
+    pub(super) fn that(holds: bool, expected: &str, measured: impl Into<String>) -> Self {
         Self { expected: expected.to_owned(), measured: measured.into(), holds }
     }
 }
@@ -35,7 +35,7 @@ const NIGHT: f64 = 2e-4;
 type Case = fn(&mut Renderer) -> Result<Finding, VerifyError>;
 
 /// All cases: a name, and what tries it.
-const CASES: [(&str, Case); 19] = [
+const CASES: [(&str, Case); 22] = [
     ("extinction towards 0", thin_cloud),
     ("extinction without end", thick_cloud),
     ("phase functions towards their poles", sharp_phases),
@@ -54,6 +54,9 @@ const CASES: [(&str, Case); 19] = [
     ("rays along the faces of a box", box_faces),
     ("as many steps as the panel allows", many_steps),
     ("the poles of panoramas", panoramas),
+    ("automata at their ends", models::automata),
+    ("shapes of no size and of any", models::shapes),
+    ("brushes at their ends", models::paintings),
     ("the same picture twice", twice),
 ];
 
@@ -72,20 +75,20 @@ pub fn hard_cases(renderer: &mut Renderer) -> Result<Vec<Check>, VerifyError> {
 }
 
 /// What a still shows: its light, and the clouds with their transmittance.
-struct Shown {
+pub(super) struct Shown {
     image: LinearImage,
     clouds: Vec<[f32; 4]>,
 }
 
 impl Shown {
     /// The first value that is no light, or no transmittance.
-    fn fault(&self) -> Option<f32> {
+    pub(super) fn fault(&self) -> Option<f32> {
         let is_light = |value: &&f32| !(value.is_finite() && **value >= 0.0);
         let light = self.image.rgba.iter().chain(&self.clouds).flatten().find(is_light);
         light.or_else(|| self.clouds.iter().map(|cloud| &cloud[3]).find(|t| **t > 1.0)).copied()
     }
 
-    fn opacity(&self) -> f64 {
+    pub(super) fn opacity(&self) -> f64 {
         self.clouds.iter().map(|cloud| 1.0 - f64::from(cloud[3])).sum::<f64>() / self.clouds.len().max(1) as f64
     }
 
@@ -102,7 +105,7 @@ impl Shown {
     }
 }
 
-fn show_at(
+pub(super) fn show_at(
     renderer: &mut Renderer,
     (scene, quality): (&Scene, &Quality),
     size: [u32; 2],
@@ -116,7 +119,7 @@ fn show(renderer: &mut Renderer, scene: &Scene, quality: &Quality) -> Result<Sho
     show_at(renderer, (scene, quality), SIZE, 0.0)
 }
 
-fn quality() -> Quality {
+pub(super) fn quality() -> Quality {
     Quality { view_steps: 96, light_steps: 6, update: UpdateFraction::Full, shadow_map_px: 32, ..Quality::default() }
 }
 

@@ -24,7 +24,26 @@ pub(super) use shapes::shapes_uniforms;
 use super::pass::sky::{SkyInputs, SkyParts};
 use crate::plan::{Lighting, SkyPlan};
 use crate::scene::Scene;
-use other::{DisplayUniforms, ShaftUniforms};
+use other::{DisplayUniforms, GlowUniforms, ShaftUniforms};
+
+/// The key light as artists' effects have it, in working units. Low light crosses more haze and is redder; the sky tables know by
+/// how much, this only follows the trend.
+fn warm_key(lighting: &Lighting) -> glam::Vec3 {
+    let low = (1.0 - lighting.towards_key.y.clamp(0.0, 0.5) * 2.0).powi(2);
+    lighting.key_lux / lighting.candela_per_unit * glam::Vec3::new(1.0, 1.0 - 0.35 * low, 1.0 - 0.65 * low)
+}
+
+/// The artists' glow: light of a white wall that the key light falls on, about it.
+pub(super) fn glow_uniforms(scene: &Scene, lighting: &Lighting) -> GlowUniforms {
+    let scattering = &scene.scattering;
+    let white = warm_key(lighting) / std::f32::consts::PI;
+    GlowUniforms {
+        towards_light: lighting.towards_key,
+        range: scattering.glow_deg.to_radians(),
+        radiance: white * scattering.glow * lighting.streak_share(),
+        width: scattering.glow_width,
+    }
+}
 
 /// What the sky tables are made from.
 pub(super) fn sky_inputs(scene: &Scene, plan: SkyPlan, lighting: &Lighting) -> SkyInputs {
@@ -98,14 +117,11 @@ fn black_body(kelvin: f64) -> glam::DVec3 {
 
 /// Streaks of light: as bright as haze lit by the key light.
 pub(super) fn shaft_uniforms(scene: &Scene, lighting: &Lighting, samples: u32) -> ShaftUniforms {
-    let light = lighting.key_lux / lighting.candela_per_unit * scene.sunshafts.tint.vec();
-    // Low light crosses more haze and is redder; the sky tables know by how much, this only follows the trend.
-    let low = (1.0 - lighting.towards_key.y.clamp(0.0, 0.5) * 2.0).powi(2);
-    let warm = glam::Vec3::new(1.0, 1.0 - 0.35 * low, 1.0 - 0.65 * low);
+    let light = warm_key(lighting) * scene.sunshafts.tint.vec();
     ShaftUniforms {
         towards_light: lighting.towards_key,
         length_rad: scene.sunshafts.length_deg.to_radians(),
-        light: light * warm * scene.sunshafts.strength * 0.035 * lighting.streak_share(),
+        light: light * scene.sunshafts.strength * 0.035 * lighting.streak_share(),
         samples,
     }
 }

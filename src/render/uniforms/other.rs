@@ -43,6 +43,18 @@ gpu_struct! {
         pub pad2: f32,
     }
 
+    /// The artists' glow of thin cloud about the light.
+    pub struct GlowUniforms {
+        /// Unit vector towards the light.
+        pub towards_light: Vec3,
+        /// Angle at which it ends, in radians.
+        pub range: f32,
+        /// Radiance at the light itself, in working units.
+        pub radiance: Vec3,
+        /// How it falls off.
+        pub width: f32,
+    }
+
     /// What a generated weather map is made of.
     pub struct MapUniforms {
         /// Seed.

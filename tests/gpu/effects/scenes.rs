@@ -360,6 +360,18 @@ pub(super) fn scenes(effect: Effect) -> Example {
         }
         Effect::Distance => example(base, shown, &[shown], false),
         Effect::Temporal => example(partial, shown, &[], true),
+        Effect::Glow => {
+            const ON: Change = |s| {
+                low_sun(s);
+                s.scene.sunshafts.strength = 0.0;
+                (s.scene.scattering.glow, s.scene.scattering.glow_deg) = (2.0, 60.0);
+            };
+            const OFF: Change = |s| {
+                ON(s);
+                s.scene.scattering.glow = 0.0;
+            };
+            example(ON, OFF, &[OFF, base], true)
+        }
         Effect::Sunshafts => {
             const OFF: Change = |s| {
                 low_sun(s);
