@@ -32,6 +32,8 @@ pub(super) struct UnderWay {
     pub(super) height_m: f32,
     layer: usize,
     map: usize,
+    /// How many strokes there are with it: with another number it was taken back.
+    count: usize,
     /// The last dab, not wrapped into the map.
     last: Option<DVec2>,
 }
@@ -53,6 +55,7 @@ impl UnderWay {
             maps.push(MapLayer { source: MapSource::Painted, ..MapLayer::default() });
         }
         let map = maps.len() - 1;
+        let count = maps[map].strokes.0.len() + 1;
         let strength = 1.0 - (1.0 - brush.strength.clamp(0.0, 1.0)).powf(SPACING as f32);
         let stroke = Stroke {
             brush: brush.brush,
@@ -65,7 +68,7 @@ impl UnderWay {
         };
         maps[map].strokes.0.push(Arc::new(stroke));
         let height_m = height_m.unwrap_or(base_m).clamp(base_m, top_m);
-        Ok(Self { height_m, layer, map, last: None })
+        Ok(Self { height_m, layer, map, count, last: None })
     }
 
     /// The layer of the map that it is on.
@@ -83,7 +86,8 @@ impl UnderWay {
         let Some(layer) = scene.layers.get(self.layer) else { return Ok(()) };
         let place = map_place(scene, layer, [east, f64::from(self.height_m), south], time_secs);
         let is_endless = scene.weather.edge == MapEdge::Repeat;
-        let Some(map) = scene.weather.layers.get_mut(self.map) else { return Ok(()) };
+        let map = scene.weather.layers.get_mut(self.map);
+        let Some(map) = map.filter(|map| map.strokes.0.len() == self.count) else { return Ok(()) };
         if map.strokes.dabs() >= MAX_DABS {
             return Err(BrushError::Worn);
         }

@@ -32,6 +32,8 @@ pub struct PaintState {
     pub softness: f32,
     /// How much cloud it adds at most.
     pub amount: f32,
+    /// Whether the button was pressed over the picture and is held since.
+    pub is_drawing: bool,
     /// Touches that are not painted yet.
     pub touches: Vec<Touch>,
     /// Height above the sea that it paints at; that of the last stroke.
@@ -48,6 +50,7 @@ impl Default for PaintState {
             strength: 0.7,
             softness: 0.7,
             amount: 1.0,
+            is_drawing: false,
             touches: Vec::new(),
             height_m: None,
         }
@@ -72,7 +75,10 @@ pub(super) fn over_picture(
     // Keys with the button are the camera's.
     let is_plain = ui.input(|input| input.modifiers.is_none() && !input.key_down(egui::Key::L));
     let pointer = if is_down { response.interact_pointer_pos() } else { None };
-    if let Some(pointer) = pointer.filter(|pointer| is_plain && place.contains(*pointer)) {
+    let pointer = pointer.filter(|pointer| is_plain && place.contains(*pointer));
+    // Who pressed the button elsewhere does not paint.
+    state.is_drawing = is_down && (state.is_drawing || begins && pointer.is_some());
+    if let Some(pointer) = pointer.filter(|_| state.is_drawing) {
         let at = (pointer - place.min) / place.size();
         let touch = Touch { at: [at.x, at.y], begins };
         if state.touches.last() != Some(&touch) {

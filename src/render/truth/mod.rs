@@ -151,16 +151,18 @@ impl Renderer {
         };
         if let Some(march) = truth.plan.march.filter(|_| truth.plan.has_clouds()) {
             let sky = truth.plan.sky.map(|sky| uniforms::sky_inputs(frame.scene, sky, &Lighting::new(frame.scene)));
-            self.add_clouds(&mut truth, march, &buffers, sky.as_ref())?;
+            let rounds = if march.baked.is_some() { 1 } else { uniforms::density_rounds(frame.scene) };
+            self.add_clouds(&mut truth, (march, rounds), &buffers, sky.as_ref())?;
         }
         Ok(truth)
     }
 
-    /// The part of a truth that finds clouds: its tiles, and the jobs that resolve them.
+    /// The part of a truth that finds clouds: its tiles, and the jobs that resolve them. `rounds` are those of loops in one
+    /// density.
     fn add_clouds(
         &self,
         truth: &mut Truth,
-        march: MarchVariant,
+        (march, rounds): (MarchVariant, u32),
         buffers: &FrameBuffers,
         sky: Option<&SkyInputs>,
     ) -> Result<(), RenderError> {
@@ -197,6 +199,7 @@ impl Renderer {
             bound,
             outputs,
             size: truth.targets.size(),
+            rounds,
         };
         let (tiles, resolve) = Tiles::new(&stage, truth.goal, march)?;
         truth.tiles = Some(tiles);

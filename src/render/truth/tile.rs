@@ -93,6 +93,8 @@ pub(super) struct Stage<'a> {
     pub(super) bound: Bound<'a>,
     pub(super) outputs: Bound<'a>,
     pub(super) size: [u32; 2],
+    /// Rounds of loops in one density: see `density_rounds`.
+    pub(super) rounds: u32,
 }
 
 #[derive(Debug)]
@@ -115,7 +117,8 @@ pub(super) struct Tiles {
     width: u32,
     tiles: Vec<Tile>,
     counters: wgpu::Buffer,
-    layers: u32,
+    /// How many layers there are, and rounds of loops in one density.
+    loops: [u32; 2],
     counts: TruthCounts,
     level: u32,
     samples: u32,
@@ -145,9 +148,10 @@ impl Tiles {
             let whole = BandUniforms { first_row, rows, pad0: 0, pad1: 0 };
             let band = stage.gpu.uniform("band", bytemuck::bytes_of(&whole));
             let all_rows = stage.gpu.uniform("band", bytemuck::bytes_of(&whole));
-            let uniforms = stage
-                .gpu
-                .uniform("truth", bytemuck::bytes_of(&Self::uniforms_at(goal, march.layers, (0, 0), first_row)));
+            let uniforms = stage.gpu.uniform(
+                "truth",
+                bytemuck::bytes_of(&Self::uniforms_at(goal, [march.layers, stage.rounds], (0, 0), first_row)),
+            );
             let mut bound = stage.bound.clone();
             bound.push(("truth", uniforms.as_entire_binding()));
             bound.push((if is_traced { "paths" } else { "marched_rays" }, state.as_entire_binding()));
@@ -171,7 +175,7 @@ impl Tiles {
             width,
             tiles,
             counters,
-            layers: march.layers,
+            loops: [march.layers, stage.rounds],
             counts: TruthCounts::default(),
             level: 0,
             samples: 0,
@@ -184,7 +188,12 @@ impl Tiles {
         Ok((this, resolve))
     }
 
-    fn uniforms_at(goal: Goal, layers: u32, (level, samples): (u32, u32), first_row: u32) -> TruthUniforms {
+    fn uniforms_at(
+        goal: Goal,
+        [layers, rounds]: [u32; 2],
+        (level, samples): (u32, u32),
+        first_row: u32,
+    ) -> TruthUniforms {
         let steps = Level::new(level);
         let (scatterings, seed) = match goal {
             Goal::Converged { .. } => (None, 0),
@@ -192,12 +201,13 @@ impl Tiles {
         };
         // Loops inside of one step or event: layers in several places, octaves, tries of a phase function.
         let inside = match goal {
-            Goal::Converged { .. } => steps.light_steps * (1 + layers) + 8 * layers + 16,
-            Goal::PathTraced { .. } => 6 * layers + 40,
+            Goal::Converged { .. } => steps.light_steps * (rounds + layers) + 8 * layers + 15 + rounds,
+            // The majorant and the density.
+            Goal::PathTraced { .. } => 6 * layers + 38 + 2 * rounds,
         };
         TruthUniforms {
             first_row,
-            per_dispatch: (ITERATIONS / inside).clamp(4, 1024),
+            per_dispatch: (ITERATIONS / inside).clamp(1, 1024),
             samples,
             scattering_limit: scatterings.unwrap_or(u32::MAX).max(1),
             seed,
@@ -214,7 +224,7 @@ impl Tiles {
     /// Tells the tile under way where it is, and how much work a dispatch may do for each ray or path.
     fn write_uniforms(&mut self, gpu: &Gpu, slice_ms: f64) {
         let tile = &self.tiles[self.tile];
-        let mut uniforms = Self::uniforms_at(self.goal, self.layers, (self.level, self.samples), tile.first_row);
+        let mut uniforms = Self::uniforms_at(self.goal, self.loops, (self.level, self.samples), tile.first_row);
         // A ray that has met cloud takes at least one step, with all its steps towards the light.
         let (least, most) = match self.goal {
             Goal::Converged { .. } => (1 + uniforms.light_steps, uniforms.per_dispatch * (1 + uniforms.light_steps)),

@@ -6,7 +6,7 @@ use super::camera::Eye;
 use super::scene::{LayerUniforms, SceneUniforms};
 use crate::plan::{KeyLight, Lighting};
 use crate::scene::{
-    BodyForm, Camera, CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scene, Wind,
+    BodyForm, Camera, CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scene, ShapeRole, Wind,
 };
 
 /// Velocity of the wind: east in x, south in y.
@@ -249,6 +249,21 @@ const LOW_LIGHT: f32 = 0.2;
 /// and no card should be asked for more of one pixel in one dispatch.
 const MOST_ITERATIONS: u32 = 48_000;
 
+/// Shapes that one round of a loop takes: `SHAPES_PER_ROUND` in `pass/shapes_distance.wgsl`.
+const SHAPES_PER_ROUND: u32 = 4;
+
+/// Rounds of loops whose number no compiler knows, in one density at a place, and one for the density itself.
+#[allow(clippy::cast_possible_truncation, reason = "no more than there may be shapes")]
+pub(crate) fn density_rounds(scene: &Scene) -> u32 {
+    let clouds = scene.shapes.iter().filter(|shape| shape.role == ShapeRole::Cloud).count() as u32;
+    let rounds = scene.visible_layers().map(|layer| match layer.model {
+        DensityModel::Shapes => clouds.div_ceil(SHAPES_PER_ROUND),
+        DensityModel::Product => layer.perlin.octaves + layer.voronoi.octaves,
+        _ => 0,
+    });
+    1 + rounds.sum::<u32>()
+}
+
 /// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many, and
 /// up to twice as many again if that is because the light is low.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
@@ -333,7 +348,7 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         step_growth: quality.step_growth,
         empty_stride: quality.empty_stride,
         light_steps: light_steps(quality.light_steps, highest_m - lowest_m, lighting.towards_key.y)
-            .min((MOST_ITERATIONS / quality.view_steps.max(1)).max(1)),
+            .min((MOST_ITERATIONS / density_rounds(scene) / quality.view_steps.max(1)).max(1)),
         light_spread_per_m: quality.light_spread_per_m(),
         light_reach_m: quality.light_reach_m,
         light_detail_steps: quality.light_detail_steps,
