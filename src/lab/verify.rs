@@ -17,7 +17,7 @@ use crate::reference::random::{pcg3d, unit_from_bits};
 use crate::render::truth::{Convergence, Goal};
 use crate::render::{RenderError, Renderer};
 use crate::scene::param::Choice as _;
-use crate::scene::{Frame, Output, Quality, Scene};
+use crate::scene::{CloudLayer, Frame, Output, Quality, Scene};
 
 pub use hard::hard_cases;
 pub use slabs::analytic;
@@ -115,6 +115,9 @@ impl Agreement {
 /// Extinction of the clouds that are compared, relative to the sky's own. Through a thick deck light scattered once hardly
 /// passes, and the few paths that see any say little.
 const THINNING: f32 = 0.05;
+/// Optical depth, straight up through all layers, that is left at most: under a closed sheet of more, light scattered once is a
+/// matter of luck.
+const THICKEST: f32 = 3.0;
 
 /// The sky as both integrators can see it: the key light scattered once, no other light on the clouds, no air before
 /// them, the same extinction towards the light as along the ray, and thin enough for light to pass.
@@ -123,11 +126,14 @@ fn single_scattering(scene: &Scene) -> Scene {
     single.scattering.ambient = 0.0;
     single.air.aerial_perspective = false;
     single.sunshafts.strength = 0.0;
+    let depth_of = |layer: &CloudLayer| layer.extinction_per_m() * layer.density * (layer.top_m - layer.base_m);
+    let depth: f32 = scene.visible_layers().map(depth_of).sum();
+    let thinning = THINNING.min(THICKEST / depth.max(f32::MIN_POSITIVE));
     for layer in &mut single.layers {
         *layer = layer.with_given_optics();
         layer.shadow_extinction_scale = 1.0;
-        layer.scattering_per_m *= THINNING;
-        layer.absorption_per_m *= THINNING;
+        layer.scattering_per_m *= thinning;
+        layer.absorption_per_m *= thinning;
     }
     single
 }
