@@ -19,16 +19,17 @@ pub fn edit_distance(a: &str, b: &str) -> usize {
 /// The `most` known names closest to `name`, best first. A key path also counts as near when its last part is.
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>, most: usize) -> Vec<&'a str> {
     let last = |key: &str| key.rsplit('.').next().unwrap_or_default().to_lowercase();
+    // Of those that are equally near by their ends the one that is nearest as a whole comes first.
     let score = |key: &str| {
         let whole = edit_distance(&key.to_lowercase(), &name.to_lowercase());
         let same_end = 1 + edit_distance(&last(key), &last(name));
         let contained = if last(name).len() > 2 && last(key).contains(&last(name)) { 2 } else { usize::MAX };
-        whole.min(same_end).min(contained)
+        (whole.min(same_end).min(contained), whole)
     };
     // Half of the letters wrong is no slip of the fingers.
     let limit = (last(name).chars().count() / 2).max(2);
-    let mut scored: Vec<(usize, &str)> = known.into_iter().map(|key| (score(key), key)).collect();
-    scored.retain(|(score, _)| *score <= limit);
+    let mut scored: Vec<((usize, usize), &str)> = known.into_iter().map(|key| (score(key), key)).collect();
+    scored.retain(|((score, _), _)| *score <= limit);
     scored.sort_by_key(|(score, _)| *score);
     scored.truncate(most);
     scored.into_iter().map(|(_, key)| key).collect()
