@@ -24,6 +24,7 @@ mod gpu {
     mod shapes;
     mod shell;
     mod stills;
+    mod sun_grid;
     mod temporal;
     mod textures;
     mod transitions;

@@ -327,7 +327,7 @@ fn thesis_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readin
     field = thesis_eroded(field, noise, layer, reading.fade);
   }
 #endif
-  clearness = min(clearness, select(1.0, -4.0 * field, field <= 0.0));
+  clearness = min(clearness, select(1.0, -10.0 * field, field <= 0.0));
   return thesis_density(field, layer);
 }
 #endif

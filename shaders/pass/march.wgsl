@@ -66,9 +66,6 @@ fn key_light_near(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
 }
 #endif
 
-// Longest step at which noise is read at its finest level, in metres.
-const FINEST_STEP_M: f32 = 250.0;
-
 fn step_at(distance_m: f32) -> f32 {
   return scene.step_m + scene.step_growth * distance_m;
 }
@@ -152,8 +149,10 @@ const SURFACE_STEP: f32 = 0.1;
 const SURFACE_DEPTH: f32 = 0.5;
 // Clear samples after which steps become longer.
 const CLEAR_SAMPLES: u32 = 4u;
-// Shortest step before a surface, relative to ordinary ones.
+// Shortest step before a surface, relative to ordinary ones: that of clouds which an ordinary step at most so deep, in
+// ordinary optical depths, may leap into.
 const NEAREST_STRIDE: f32 = 0.25;
+const NEAREST_DEPTH: f32 = 0.25;
 // Steps inside begin short and grow by this: clouds are thin at their surface, where the light is, and by its extinction
 // alone the first sample would stand for a long way into denser cloud.
 const GROWTH_INSIDE: f32 = 1.5;
@@ -196,7 +195,8 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       inside_step = 0.0;
       clear_samples += 1u;
       let stride = select(1.0, scene.empty_stride, clear_samples > CLEAR_SAMPLES);
-      let near = step * select(1.0, stride * max(clearness, NEAREST_STRIDE), is_varied);
+      let nearest = clamp(NEAREST_DEPTH * scene.step_depth / (scene.greatest_extinction * step), NEAREST_STRIDE, 1.0);
+      let near = step * select(1.0, stride * max(clearness, nearest), is_varied);
       // Where the map promises clear air, all of that way and a share of a step, or neighbours would go on in rows.
       let ahead = select(near, clear_way + jitter * near, is_varied && clear_way > near);
       let advanced = select(ahead, min(max(0.5 * (met - t), surface_step), met - t), t < met);

@@ -17,9 +17,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   var added = painted[index];
   var taken = painted[index + 1].xy;
   for (var i = 0u; i < paint.count; i++) {
-    // The nearest of the dab's copies, for the map repeats.
+    // Where the map repeats, the nearest of the dab's copies.
     let apart = (vec2f(texel) + 0.5 - dabs[i]) / f32(side);
-    let distance = length(apart - round(apart)) / paint.radius;
+    let distance = length(apart - select(vec2f(0.0), round(apart), paint.repeats != 0u)) / paint.radius;
     let inside = clamp((1.0 - distance) / max(paint.softness, 1e-3), 0.0, 1.0);
     let share = paint.strength * inside * inside * (3.0 - 2.0 * inside);
     if (paint.restores != 0u) {

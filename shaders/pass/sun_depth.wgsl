@@ -1,5 +1,13 @@
 // How much cloud lies towards the key light.
 #import "pass/cloud_field.wgsl"
+#if SUN_GRID
+#import "pass/sun_grid.wgsl"
+
+@group(1) @binding(9) var sun_depths: texture_3d<f32>;
+#endif
+
+// Longest step at which noise is read at its finest level, in metres.
+const FINEST_STEP_M: f32 = 250.0;
 
 // Extinction of all layers at a place towards the key light, in 1/m.
 fn shadow_extinction(p: vec3f, reading: Reading) -> f32 {
@@ -25,12 +33,30 @@ const LIGHT_GROWTH_BY_DEPTH: f32 = 0.1;
 // Most of it that counts.
 const LIGHT_DEPTH_THAT_COUNTS: f32 = 4.0;
 
+#if SUN_GRID
+// Steps are taken over so many cells before the grid is read: its cells are blurred into each other.
+const NEAR_CELLS: f32 = 3.5;
+const USUAL_WAY_M: f32 = 3000.0;
+
+fn sun_depth_beyond(q: vec3f) -> f32 {
+  count_read();
+  let size = vec3f(textureDimensions(sun_depths));
+  return sun_grid_depth(textureSampleLevel(sun_depths, linear_repeat, (sun_grid_node(q) + 0.5) / size, 0.0).x);
+}
+#endif
+
 // Optical depth from a place towards the key light: the only way to ask for the sun's visibility through cloud.
 // Steps have each its own length (errata 6) and are sampled in their middle; they cover the reach, or the way out of the
 // domain where that is shorter.
 fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
   let way = min(domain_exit(p, scene.towards_light), scene.light_reach_m);
+#if SUN_GRID
+  let near = select(FAR_M, NEAR_CELLS * sun_grid_cell(p), sun_grid_holds(p));
+  // The steps before the grid is read are those of a usual way, however long it is.
+  let steps = light_steps_over(min(way, max(near, USUAL_WAY_M)), scene.light_steps, scene.light_spread_per_m);
+#else
   let steps = light_steps_over(way, scene.light_steps, scene.light_spread_per_m);
+#endif
   let by_depth = select(0.0, LIGHT_GROWTH_BY_DEPTH, steps.y > 1.0);
   var step = steps.x;
   var t = 0.0;
@@ -47,6 +73,15 @@ fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
     if (depth > 600.0 || t >= way) {
       break;
     }
+#if SUN_GRID
+    if (t >= near) {
+#if COUNT
+      counted_light_steps += 1u;
+#endif
+      depth += sun_depth_beyond(p + scene.towards_light * t);
+      break;
+    }
+#endif
     step = min(step * steps.y * (1.0 + by_depth * min(own, LIGHT_DEPTH_THAT_COUNTS)), way - t);
   }
   return depth;

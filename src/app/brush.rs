@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, Vec3};
 
 use crate::render::uniforms::map_place;
-use crate::scene::{MAX_DABS, MAX_LAYERS, MapEdge, MapLayer, MapSource, Scene, Stroke};
+use crate::scene::{CloudLayer, MAX_DABS, MAX_LAYERS, MapEdge, MapLayer, MapSource, Scene, Stroke};
 use crate::ui::PaintState;
 
 /// Dabs lie so many radii apart.
@@ -17,6 +17,9 @@ pub(super) enum BrushError {
     /// No layer is where the map says.
     #[error("No layer is placed by the weather map, so there is nothing to paint; choose another density model")]
     Mapless,
+    /// All layers that are have no cloud.
+    #[error("No layer that the weather map places holds cloud; raise the coverage, or switch a layer on")]
+    Hidden,
     /// The list of map layers is full.
     #[error("The weather map has {MAX_LAYERS} layers already; remove one, and painting gets one of its own")]
     Full,
@@ -44,7 +47,9 @@ impl UnderWay {
     pub(super) fn begin(scene: &mut Scene, height_m: Option<f32>, brush: &PaintState) -> Result<Self, BrushError> {
         let layers: Vec<_> = scene.numbered_layers().filter(|(_, layer)| layer.reads_map()).collect();
         let at_height = |height: f32| layers.iter().find(|(_, layer)| (layer.base_m..=layer.top_m).contains(&height));
-        let found = height_m.and_then(at_height).or(layers.first()).ok_or(BrushError::Mapless)?;
+        let is_placed = scene.layers.iter().any(CloudLayer::reads_map);
+        let none = if is_placed { BrushError::Hidden } else { BrushError::Mapless };
+        let found = height_m.and_then(at_height).or(layers.first()).ok_or(none)?;
         let (layer, base_m, top_m) = (found.0, found.1.base_m, found.1.top_m);
         let scale_m = scene.weather.size_m * found.1.map_scale;
         let maps = &mut scene.weather.layers;
@@ -88,14 +93,16 @@ impl UnderWay {
         let is_endless = scene.weather.edge == MapEdge::Repeat;
         let map = scene.weather.layers.get_mut(self.map);
         let Some(map) = map.filter(|map| map.strokes.0.len() == self.count) else { return Ok(()) };
-        if map.strokes.dabs() >= MAX_DABS {
+        let room = MAX_DABS.saturating_sub(map.strokes.dabs());
+        if room == 0 {
             return Err(BrushError::Worn);
         }
         let Some(stroke) = map.strokes.0.last_mut().map(Arc::make_mut) else { return Ok(()) };
         let spacing = SPACING * f64::from(stroke.radius);
+        let most = stroke.dabs.len() + room;
         let mut dab = |place: DVec2| {
             let is_on_map = place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all();
-            if is_endless || is_on_map {
+            if (is_endless || is_on_map) && stroke.dabs.len() < most {
                 let wrapped = if is_endless { place - place.floor() } else { place };
                 stroke.dabs.push([wrapped.x as f32, wrapped.y as f32]);
             }
@@ -161,11 +168,25 @@ mod tests {
         let mut mapless = Scene::default();
         mapless.layers[0].model = DensityModel::Shapes;
         assert_eq!(UnderWay::begin(&mut mapless, None, &brush).err(), Some(BrushError::Mapless));
+        let mut clear = Scene::default();
+        clear.weather.coverage = 0.0;
+        assert_eq!(UnderWay::begin(&mut clear, None, &brush).err(), Some(BrushError::Hidden));
         let mut full = Scene::default();
         full.weather.layers.resize(MAX_LAYERS, MapLayer::default());
         assert_eq!(UnderWay::begin(&mut full, None, &brush).err(), Some(BrushError::Full));
         let down = painted(&[Vec3::NEG_Y]);
         assert_eq!(down.weather.layers[1].strokes.dabs(), 0, "nothing is up there when looking down from below");
+    }
+
+    #[test]
+    fn no_touch_paints_more_than_is_loaded_again() {
+        let mut scene = Scene::default();
+        let brush = PaintState { radius_m: 50.0, ..PaintState::default() };
+        let mut stroke = UnderWay::begin(&mut scene, Some(1500.0), &brush).expect("the sky has a map");
+        let towards = [Vec3::new(-1.0, 0.5, -1.0).normalize(), Vec3::new(1.0, 0.5, -1.0).normalize()];
+        let result = (0..200_000).try_for_each(|i| stroke.touch(&mut scene, towards[i % 2], 0.0));
+        assert_eq!(result, Err(BrushError::Worn));
+        assert_eq!(scene.weather.layers[1].strokes.dabs(), MAX_DABS);
     }
 
     #[test]

@@ -152,6 +152,9 @@ effects! {
     KeyLight ("light march", "Light of sun or moon on the clouds, and its march through them.") {
         flags: ["LIT"], bindings: [], passes: []
     }
+    SunGrid ("grid of sun depth", "The sun's optical depth on a grid, from which far steps towards the light are read.") {
+        flags: ["SUN_GRID"], bindings: ["sun_depths"], passes: ["sun_sweep"]
+    }
     Octaves ("scattering octaves", "Light scattered more than once in the clouds.") {
         flags: [], bindings: [], passes: []
     }

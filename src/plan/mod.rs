@@ -16,7 +16,7 @@ pub use decide::{Need, Verdict};
 pub use effect::{Effect, EffectInfo, Forced};
 pub use history::{HistoryKey, UpdatePattern};
 pub use light::{KeyLight, Lighting};
-pub use variant::{MarchVariant, Phases};
+pub use variant::{MarchVariant, Phases, SunGridPlan};
 
 use std::ops::Range;
 

@@ -5,7 +5,7 @@ use super::effect::Effect;
 use super::view;
 use super::{KeyLight, Lighting};
 use crate::scene::{
-    CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapLayer, MapSource, Output, PhaseKind, Scene,
+    CloudLayer, DensityModel, DomainKind, Frame, MapEdge, MapLayer, MapSource, Output, PhaseKind, Quality, Scene,
 };
 
 /// Fewest voxels across a baked box; half as many upwards have to be more than one.
@@ -35,6 +35,22 @@ impl Phases {
         Self::FLAGS.into_iter().zip(on).filter_map(|(flag, on)| on.then_some(flag))
     }
 }
+
+/// How the grid of the sun's optical depth is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SunGridPlan {
+    /// Nodes across.
+    pub nodes: u32,
+    /// Whether the light is so low that its planes follow each other sideways.
+    pub is_low: bool,
+}
+
+/// Sine of the light's elevation below which they do.
+const LOW_LIGHT_SINE: f32 = 0.35;
+/// Fewest nodes across the grid.
+const LEAST_NODES: u32 = 16;
+/// A shorter way towards the light is marched.
+const LEAST_REACH_M: f32 = 20_000.0;
 
 /// The compiled form of the march: the key of its pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -89,6 +105,8 @@ pub struct MarchVariant {
     pub skip: bool,
     /// The distance of the clouds is kept.
     pub distance: bool,
+    /// The sun's optical depth is read from a grid where it is far from a sample.
+    pub sun_grid: Option<SunGridPlan>,
 }
 
 impl MarchVariant {
@@ -187,6 +205,7 @@ impl MarchVariant {
             float: frame.output != Output::Display,
             skip: false,
             distance: false,
+            sun_grid: None,
         })
     }
 
@@ -272,8 +291,26 @@ impl MarchVariant {
             ],
             "the map says where nothing is",
         );
+        let sun_grid = self.sun_grid(quality, lit, lighting, why);
         let octaves = if octaves { quality.octaves } else { 0 };
-        Self { octaves, lit, ambient, air, ground, skip, distance, phases: phases(scene, lit, why), ..self }
+        Self { octaves, lit, ambient, air, ground, skip, distance, sun_grid, phases: phases(scene, lit, why), ..self }
+    }
+
+    /// The grid that far steps towards the light are read from.
+    fn sun_grid(self, quality: &Quality, lit: bool, lighting: &Lighting, why: &mut Verdicts) -> Option<SunGridPlan> {
+        let runs = why.unless(
+            Effect::SunGrid,
+            &[
+                (!lit, Need::Impossible, "no light is marched towards"),
+                (self.domain == DomainKind::Box, Need::Impossible, "the clouds are in a box"),
+                (self.baked.is_some(), Need::Impossible, "voxels are read"),
+                (quality.light_reach_m < LEAST_REACH_M, Need::Impossible, "steps towards the light end before it"),
+                (quality.light_grid < LEAST_NODES, Need::Unwanted, "the quality asks for all steps"),
+            ],
+            "far cloud shadows clouds softly",
+        );
+        let nodes = quality.light_grid.max(LEAST_NODES);
+        runs.then_some(SunGridPlan { nodes, is_low: lighting.towards_key.y < LOW_LIGHT_SINE })
     }
 
     /// The variant of paths, which scatter all light by the layers' phase functions, whatever the march needs.
@@ -323,7 +360,7 @@ impl MarchVariant {
 
     /// The form that bakes the voxels: every layer as it is.
     pub fn to_bake(self) -> Self {
-        Self { baked: None, skip: false, ..self }
+        Self { baked: None, skip: false, sun_grid: None, ..self }
     }
 
     /// Parts of the shader that add a binding are switched by text, or the layout would still need them.
@@ -337,6 +374,7 @@ impl MarchVariant {
             ("FLOAT", self.float),
             ("SKIP", self.skip),
             ("DISTANCE", self.distance),
+            ("SUN_GRID", self.sun_grid.is_some()),
         ];
         let own = own.into_iter().filter_map(|(flag, on)| on.then_some(flag));
         self.field_flags().chain(self.phases.flags()).chain(own)
@@ -376,6 +414,7 @@ impl MarchVariant {
             float: false,
             skip: false,
             distance: false,
+            sun_grid: None,
             ..self
         }
     }

@@ -69,7 +69,7 @@ impl Living {
             return Ok(());
         }
         let rules = rules(frame.scene, plan.runs(Effect::Shear));
-        let moment = rules.automaton.at(frame.time_secs);
+        let moment = living(frame.scene).map_or_else(|| rules.automaton.clone(), Clone::clone).at(frame.time_secs);
         if self.made.as_ref().is_none_or(|made| made.rules != rules) {
             self.made = None;
             self.made = Some(Made::new(context.gpu, rules));
@@ -261,11 +261,19 @@ fn storage(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
 
 /// The rules of the scene's automaton; of a small one where programs want one that no layer is, because they were forced to.
 fn rules(scene: &Scene, is_sheared: bool) -> Rules {
-    let layer = scene.visible_layers().find(|layer| layer.model == DensityModel::Automaton);
     let unused = || Automaton { cells: 16, levels: 8, ..Automaton::default() };
     // Its direction alone counts.
     let wind = Wind { from_deg: scene.wind.from_deg, ..Wind::default() };
-    Rules { automaton: layer.map_or_else(unused, |layer| layer.automaton.clone()), shear: is_sheared.then_some(wind) }
+    let automaton = living(scene).map_or_else(unused, |automaton| Automaton {
+        // How fast generations follow each other changes none of them.
+        generation_secs: Automaton::default().generation_secs,
+        ..automaton.clone()
+    });
+    Rules { automaton, shear: is_sheared.then_some(wind) }
+}
+
+fn living(scene: &Scene) -> Option<&Automaton> {
+    scene.visible_layers().find(|layer| layer.model == DensityModel::Automaton).map(|layer| &layer.automaton)
 }
 
 fn favour_key() -> ProgramKey {

@@ -27,9 +27,10 @@ struct Part {
 }
 
 /// From the whole picture to the bare sky.
-const PARTS: [Part; 7] = [
+const PARTS: [Part; 8] = [
     // Streaks are made of the finished picture, so they go first.
     Part { name: "shafts", effect: Some(Effect::Sunshafts) },
+    Part { name: "glow", effect: Some(Effect::Glow) },
     Part { name: "multiple", effect: None },
     Part { name: "direct", effect: Some(Effect::KeyLight) },
     Part { name: "bounce", effect: None },

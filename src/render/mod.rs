@@ -21,6 +21,7 @@ mod samples;
 mod schedule;
 pub mod shaders;
 mod still;
+mod sun_grid;
 pub mod tables;
 mod targets;
 pub mod truth;
@@ -41,6 +42,7 @@ use bakes::Bakes;
 use clearance::Clearance;
 use context::Pace;
 use pass::sky::{SkyParts, SkyTables};
+use sun_grid::SunGrid;
 use targets::Targets;
 use uniforms::Eye;
 use voxels::Voxels;
@@ -61,6 +63,7 @@ pub fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
         .chain(automaton::programs(plan))
         .chain(paint::programs(plan))
         .chain(clearance::programs(plan))
+        .chain(sun_grid::programs(plan))
         .chain(passes::programs(plan, true))
         .collect()
 }
@@ -148,6 +151,7 @@ pub struct Renderer {
     bakes: Bakes,
     weather: WeatherMap,
     clearance: Clearance,
+    sun_grid: SunGrid,
     voxels: Voxels,
     living: Living,
     targets: Option<Targets>,
@@ -185,6 +189,7 @@ impl Renderer {
             bakes: Bakes::new(gpu)?,
             weather: WeatherMap::new(),
             clearance: Clearance::default(),
+            sun_grid: SunGrid::default(),
             voxels: Voxels::default(),
             living: Living::default(),
             targets: None,
@@ -278,6 +283,7 @@ impl Renderer {
         (self.sky, self.targets, self.history, self.shown, self.last_plan) = (None, None, None, None, None);
         self.bakes = Bakes::new(&self.gpu)?;
         (self.weather, self.clearance) = (WeatherMap::new(), Clearance::default());
+        self.sun_grid.clear();
         (self.voxels, self.living) = (Voxels::default(), Living::default());
         Ok(())
     }
@@ -298,6 +304,7 @@ impl Renderer {
         self.bakes.bytes()
             + self.weather.bytes()
             + self.clearance.bytes()
+            + self.sun_grid.bytes()
             + self.voxels.bytes()
             + self.living.bytes()
             + self.sky.as_ref().map_or(0, SkyTables::bytes)

@@ -9,18 +9,23 @@ use crate::gpu::{Gpu, GpuError, Job, ProgramKey};
 use crate::plan::{Effect, FramePlan};
 use crate::scene::{Brush, CloudKind, Stroke, Strokes};
 
+/// Dabs that one job draws: it goes through all of them at each texel that any of them reaches.
+const MOST_AT_ONCE: usize = 256;
+
 /// One painted layer.
 #[derive(Debug)]
 pub(super) struct Painting {
     side: u32,
     applied: Strokes,
+    /// Whether what crosses the map's edge goes on at the other side.
+    repeats: bool,
     buffer: wgpu::Buffer,
 }
 
 impl Painting {
     /// A layer of so many texels across, without paint.
     pub(super) fn new(gpu: &Gpu, side: u32) -> Self {
-        Self { side, applied: Strokes::default(), buffer: clear(gpu, side) }
+        Self { side, applied: Strokes::default(), repeats: true, buffer: clear(gpu, side) }
     }
 
     /// What was painted.
@@ -32,9 +37,12 @@ impl Painting {
     pub(super) fn update(
         &mut self,
         context: &Context<'_>,
-        strokes: &Strokes,
+        (strokes, repeats): (&Strokes, bool),
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
+        if self.repeats != repeats {
+            *self = Self { repeats, ..Self::new(context.gpu, self.side) };
+        }
         let same = self.applied.0.iter().zip(&strokes.0).take_while(|(old, new)| old == new).count();
         let (rest, wanted) = (&self.applied.0[same..], &strokes.0[same..]);
         // The stroke under the brush grows.
@@ -60,14 +68,28 @@ impl Painting {
 
     /// Draws a stroke from one of its dabs on.
     fn draw(&self, context: &Context<'_>, stroke: &Stroke, drawn: usize, jobs: &mut Vec<Job>) -> Result<(), GpuError> {
+        stroke.dabs[drawn..].chunks(MOST_AT_ONCE).try_for_each(|dabs| self.draw_some(context, stroke, dabs, jobs))
+    }
+
+    fn draw_some(
+        &self,
+        context: &Context<'_>,
+        stroke: &Stroke,
+        dabs: &[[f32; 2]],
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), GpuError> {
         let side = self.side as f32;
-        let dabs: Vec<Vec2> = stroke.dabs[drawn..].iter().map(|dab| Vec2::from_array(*dab) * side).collect();
+        let dabs: Vec<Vec2> = dabs.iter().map(|dab| Vec2::from_array(*dab) * side).collect();
         let Some(first) = dabs.first() else { return Ok(()) };
         let (low, high) = dabs.iter().fold((*first, *first), |(low, high), dab| (low.min(*dab), high.max(*dab)));
         let reach = stroke.radius * side + 1.0;
         let corner = (low - reach).floor();
         let extent = ((high + reach).ceil() - corner).min(Vec2::splat(side));
-        let uniforms = uniforms(stroke, (corner.as_ivec2(), extent.as_uvec2()), (dabs.len(), self.side));
+        let (corner, extent) = (corner.as_ivec2(), extent.as_uvec2());
+        let uniforms = PaintUniforms {
+            repeats: self.repeats.into(),
+            ..uniforms(stroke, (corner, extent), (dabs.len(), self.side))
+        };
         let paint = context.gpu.uniform("paint", bytemuck::bytes_of(&uniforms));
         let places = context.gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
             label: Some("dabs"),
@@ -124,6 +146,10 @@ fn uniforms(stroke: &Stroke, (first, extent): (IVec2, UVec2), (count, side): (us
         count: count as u32,
         side,
         restores: u32::from(stroke.brush == Brush::Restore),
+        repeats: 1,
+        pad0: 0,
+        pad1: 0,
+        pad2: 0,
     }
 }
 

@@ -8,6 +8,7 @@ use super::context::{Bound, Context};
 use super::pass::sky::SkyTables;
 use super::passes::{FrameBuffers, Passes};
 use super::samples::jitter_shift;
+use super::sun_grid::SunGrid;
 use super::targets::{Targets, ray_count};
 use super::uniforms::other::PlainUniforms;
 use super::uniforms::scene::ViewUniforms;
@@ -72,7 +73,7 @@ impl Renderer {
         let phase = next_phase(usable.as_ref());
         let mut view = view_uniforms(frame, &plan, &eye, usable.as_ref(), &lighting);
         view.jitter.y = jitter_shift(self.jitter_seed);
-        let buffers = frame_buffers(&context, frame, &plan, &view);
+        let buffers = frame_buffers(&context, frame, &plan, (&view, &self.sun_grid));
         let shared = self.shared_resources();
         let display = &targets.display[self.display_side];
         let mut passes =
@@ -160,6 +161,15 @@ impl Renderer {
         read_by_bake.extend(self.living.resources());
         let counts = [self.weather.count(), self.living.count()];
         self.voxels.update(&context, (frame, plan), (&read_by_bake, counts), jobs)?;
+        match plan.march {
+            Some(_) if plan.has_clouds() => {
+                read_by_bake.extend(self.voxels.resources());
+                let read = (read_by_bake, counts);
+                self.sun_grid.update(&context, (frame, plan), read, jobs)?;
+            }
+            _ if plan.holds_clouds => {}
+            _ => self.sun_grid.clear(),
+        }
         Ok(())
     }
 
@@ -170,6 +180,7 @@ impl Renderer {
         shared.extend(self.weather.resources());
         shared.extend(self.living.resources());
         shared.extend(self.clearance.resources());
+        shared.extend(self.sun_grid.resources());
         shared.extend(self.voxels.resources());
         shared
     }
@@ -180,7 +191,7 @@ pub(super) fn frame_buffers(
     context: &Context<'_>,
     frame: &Frame<'_>,
     plan: &FramePlan,
-    view: &ViewUniforms,
+    (view, sun_grid): (&ViewUniforms, &SunGrid),
 ) -> FrameBuffers {
     let scene = frame.scene;
     let lighting = Lighting::new(scene);
@@ -189,7 +200,10 @@ pub(super) fn frame_buffers(
     let uniform = |label, bytes| context.gpu.uniform(label, bytes);
     FrameBuffers {
         view: uniform("view", bytemuck::bytes_of(view)),
-        scene: uniform("scene", bytemuck::bytes_of(&uniforms::scene_uniforms(frame, &lighting, &eye))),
+        scene: uniform(
+            "scene",
+            bytemuck::bytes_of(&sun_grid.placed(frame, uniforms::scene_uniforms(frame, &lighting, &eye))),
+        ),
         ground: uniform("ground", bytemuck::bytes_of(&uniforms::ground_uniforms(scene, &lighting, &eye, shadow_px))),
         display: uniform("display", bytemuck::bytes_of(&uniforms::display_uniforms(scene, &lighting))),
         plain: uniforms::plain_sky(scene).map(|sky_radiance| {

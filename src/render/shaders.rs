@@ -55,6 +55,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         "SOLIDS",
         "STARS",
         "SUN_DISC",
+        "SUN_GRID",
         "TERRAIN",
         "TEXTURE",
         "THESIS",

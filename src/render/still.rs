@@ -152,7 +152,7 @@ impl Renderer {
         let eye = Eye::new(&frame.scene.camera);
         let (targets, _) = Targets::fitting(None, &self.gpu, plan, frame.render_size())?;
         let view = view_uniforms(frame, plan, &eye, None, &lighting);
-        let buffers = frame_buffers(&self.context_apart(), frame, plan, &view);
+        let buffers = frame_buffers(&self.context_apart(), frame, plan, (&view, &self.sun_grid));
         let samples = PixelSamples::new(&self.gpu, &view, &buffers.view, plan.pixel_samples);
         Ok(Apart { targets, buffers, samples, candela_per_unit: lighting.candela_per_unit })
     }

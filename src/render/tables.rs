@@ -28,6 +28,8 @@ choices! {
         Relief ("relief"),
         /// Distance to the next cloud on a map of heights, for long steps.
         ClearWays ("clear-ways"),
+        /// Logarithm of one more than the key light's optical depth, about the eye.
+        SunDepths ("sun-depths"),
         /// What the air lets through: by the cosine of the zenith angle and the height.
         SkyTransmittance ("sky-transmittance"),
         /// Light scattered more than once: by the sun's height and the height.
@@ -69,6 +71,7 @@ impl Renderer {
             TableKind::CurlNoise => baked("bake_curl"),
             TableKind::Relief => baked("bake_terrain"),
             TableKind::ClearWays => self.clearance.texture(),
+            TableKind::SunDepths => self.sun_grid.texture(),
             TableKind::SkyTransmittance => sky.map(|sky| &sky.transmittance),
             TableKind::SkyMultiscatter => sky.map(|sky| &sky.multiscatter),
             TableKind::SkyView => sky.map(|sky| &sky.view),

@@ -78,6 +78,7 @@ impl Renderer {
         all.extend(self.voxels.textures());
         all.extend(self.living.textures());
         all.extend(self.clearance.texture().map(|ways| ("clear_spread", ways)));
+        all.extend(self.sun_grid.texture().map(|depths| ("sun_sweep", depths)));
         let Some(targets) = &self.targets else { return all };
         all.extend(targets.cloud_shadow.iter().map(|texture| ("cloud_shadow", texture)));
         all.push(("background", &targets.background));

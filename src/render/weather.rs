@@ -10,7 +10,7 @@ use super::uniforms::other::{BlendUniforms, MapUniforms};
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
 use crate::images::map::read_map_image;
 use crate::images::pattern::FramePattern;
-use crate::scene::{MapBlend, MapLayer, MapSource, Strokes, Weather};
+use crate::scene::{MapBlend, MapEdge, MapLayer, MapSource, Strokes, Weather};
 
 /// Edge length of the map.
 const SIDE: u32 = 512;
@@ -40,7 +40,8 @@ type Joining = (MapBlend, f32);
 enum LayerKey {
     /// Between two states, by the share of the later one, and how it joins those below it.
     Between([StateKey; 2], f32, Joining),
-    Painted(Strokes, f32),
+    /// How much of it counts, and whether the map repeats.
+    Painted(Strokes, f32, bool),
 }
 
 #[derive(Debug)]
@@ -98,7 +99,7 @@ impl WeatherMap {
                         }
                     }
                 }
-                LayerKey::Painted(strokes, _) if !is_painted => *strokes = Strokes::default(),
+                LayerKey::Painted(strokes, ..) if !is_painted => *strokes = Strokes::default(),
                 LayerKey::Painted(..) => {}
             }
             wanted.push(key);
@@ -164,8 +165,8 @@ impl WeatherMap {
         for (index, layer) in wanted.iter().enumerate() {
             let ([before, after], share, (mode, opacity)) = match layer {
                 LayerKey::Between(states, share, joining) => (states, share, joining),
-                LayerKey::Painted(strokes, opacity) => {
-                    self.lay_over(context, index, (strokes, *opacity), jobs)?;
+                LayerKey::Painted(strokes, opacity, repeats) => {
+                    self.lay_over(context, index, (strokes, *opacity, *repeats), jobs)?;
                     continue;
                 }
             };
@@ -197,11 +198,11 @@ impl WeatherMap {
         &mut self,
         context: &Context<'_>,
         index: usize,
-        (strokes, opacity): (&Strokes, f32),
+        (strokes, opacity, repeats): (&Strokes, f32, bool),
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
         let painting = self.paintings.entry(index).or_insert_with(|| Painting::new(context.gpu, SIDE));
-        painting.update(context, strokes, jobs)?;
+        painting.update(context, (strokes, repeats), jobs)?;
         let blend = BlendUniforms { share: 0.0, mode: 0, opacity, pad2: 0.0 };
         let buffer = context.gpu.uniform("blend", bytemuck::bytes_of(&blend));
         let below = index.checked_sub(1).map(|below| &self.joined[below].view);
@@ -252,7 +253,7 @@ fn layer_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<Layer
             let after = if share > 0.0 { key(state + 1.0) } else { key(state) };
             Ok(LayerKey::Between([key(state), after], share as f32, joining))
         }
-        MapSource::Painted => Ok(LayerKey::Painted(layer.strokes.clone(), joining.1)),
+        MapSource::Painted => Ok(LayerKey::Painted(layer.strokes.clone(), joining.1, weather.edge == MapEdge::Repeat)),
         MapSource::Image => {
             let name = named(layer)?;
             Ok(LayerKey::Between([(); 2].map(|()| StateKey::Image(name.into())), 0.0, joining))

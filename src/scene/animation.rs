@@ -86,11 +86,11 @@ impl Default for Animation {
     }
 }
 
-/// Whether a parameter can have keys: files and what other parameters depend on cannot.
+/// Whether a parameter can have keys: files, strokes and what other parameters depend on cannot.
 pub fn can_move(entry: &edit::Entry) -> bool {
-    !entry.is_file()
-        && entry.key != "domain.kind"
-        && !(entry.key.starts_with("layers.") && entry.key.ends_with(".model"))
+    let is_model = entry.key.starts_with("layers.") && entry.key.ends_with(".model");
+    let is_fixed = entry.is_file() || entry.key.ends_with(".strokes") || entry.key == "domain.kind" || is_model;
+    !is_fixed
 }
 
 impl Track {

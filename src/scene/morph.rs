@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::paint::Strokes;
 use super::param::{ChoiceInfo, Colour, FileName, GroupInfo, Info, List, Params, Unit, Visitor};
-use super::{CloudLayer, DensityModel, MAX_LAYERS, MAX_SHAPES, MapBlend, MapLayer, Scene, Shape};
+use super::{CloudLayer, DensityModel, MAX_LAYERS, MAX_SHAPES, MapBlend, MapLayer, Scene, Shape, ShapeJoin};
 
 /// The sky a share of the way from one to the other: 0 is the first, 1 the second, bit for bit.
 ///
@@ -27,9 +27,29 @@ pub fn morph(from: &Scene, to: &Scene, share: f32) -> Scene {
         (|layer: &CloudLayer| thin(layer, coverage_before), |layer: &CloudLayer| thin(layer, coverage_after));
     // Of these a sky has one at most.
     let is_single = |layer: &CloudLayer| matches!(layer.model, DensityModel::Grid | DensityModel::Automaton);
-    let is_alone = |from: &CloudLayer, to: &CloudLayer| is_single(from) && is_single(to);
+    let is_alone = |from: &CloudLayer, to: &CloudLayer| is_single(from) && from.model == to.model;
+    for index in 0..begin.layers.len() {
+        let Some(model) = begin.layers.get(index).filter(|layer| is_single(layer)).map(|layer| layer.model) else {
+            continue;
+        };
+        // Whatever else they are, the two of its model go into each other.
+        if let Some(other) = end.layers.iter().position(|layer| layer.model == model) {
+            if index < end.layers.len() { end.layers.swap(index, other) } else { begin.layers.swap(index, other) }
+        }
+    }
     pair(&mut begin.layers, &mut end.layers, MAX_LAYERS, (as_nothing, is_alone));
-    let small = |shape: &Shape| Shape { width_m: 0.0, length_m: 0.0, tall_m: 0.0, blend_m: 0.0, ..shape.clone() };
+    let size = |shape: &Shape, side: f32, tall_m: f32| Shape {
+        width_m: side,
+        length_m: side,
+        tall_m,
+        blend_m: 0.0,
+        ..shape.clone()
+    };
+    // What cuts all others down to it changes nothing where it is large.
+    let small = |shape: &Shape| match shape.join {
+        ShapeJoin::Intersection => size(shape, Shape::WIDEST_M, Shape::TALLEST_M),
+        _ => size(shape, 0.0, 0.0),
+    };
     pair(&mut begin.shapes, &mut end.shapes, MAX_SHAPES, ((small, small), |_: &Shape, _: &Shape| false));
     if let ([from], [to]) = (&begin.weather.layers[..], &end.weather.layers[..])
         && !are_alike(from, to)
@@ -320,5 +340,33 @@ mod tests {
         to.layers.resize(MAX_LAYERS, to.layers[0].clone());
         let model = |share| morph(&from, &to, share).layers[0].model;
         assert_eq!((model(0.4), model(0.6)), (DensityModel::Profile, DensityModel::Product));
+    }
+
+    #[test]
+    fn an_automaton_goes_on_wherever_it_stands() {
+        let living = CloudLayer { model: DensityModel::Automaton, ..CloudLayer::default() };
+        let (mut one, mut two) = (Scene::default(), Scene::default());
+        one.layers = vec![living.clone()];
+        two.layers = vec![CloudLayer { base_m: 6000.0, top_m: 7000.0, ..CloudLayer::default() }, living.clone()];
+        for (from, to) in [(&one, &two), (&two, &one)] {
+            for share in [0.01, 0.49, 0.51, 0.99] {
+                let between = morph(from, to, share);
+                let automata: Vec<_> =
+                    between.layers.iter().filter(|layer| layer.model == DensityModel::Automaton).collect();
+                assert_eq!(automata, [&living], "at {share}");
+                assert_eq!(between.layers.len(), 2, "at {share}: the other comes or goes");
+            }
+        }
+    }
+
+    #[test]
+    fn a_shape_that_cuts_all_others_to_itself_begins_as_large_as_can_be() {
+        let mut cut = Scene::default();
+        let shape = Shape::default();
+        cut.shapes = vec![shape.clone(), Shape { join: ShapeJoin::Intersection, ..shape.clone() }];
+        let whole = Scene { shapes: vec![shape.clone()], ..cut.clone() };
+        let soon = morph(&whole, &cut, 0.001).shapes;
+        assert!(soon[0] == shape && soon[1].width_m > 50_000.0, "{}", soon[1].width_m);
+        assert!(morph(&whole, &cut, 0.999).shapes[1].width_m < 3000.0);
     }
 }

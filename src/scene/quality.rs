@@ -47,28 +47,30 @@ params! {
     pub struct Quality ("Quality") {
         /// Most steps along a view ray.
         view_steps: u32 = 160, 4..=1024, None;
-        /// Length of the first step inside cloud.
-        step_m: f32 = 50.0, 1.0..=1000.0, Metres, logarithmic;
+        /// Length of the first step inside cloud; up to 1.6 times as long where a layer is thicker than 1.8 km.
+        step_m: f32 = 60.0, 1.0..=1000.0, Metres, logarithmic;
         /// Growth of the step with distance: metres more per metre.
-        step_growth: f32 = 0.0055, 0.0..=0.1, None;
+        step_growth: f32 = 0.0042, 0.0..=0.1, None;
         /// Optical depth of a step inside dense cloud; the step is never longer than its length by distance.
         step_depth: f32 = 1.0, 0.02..=10_000.0, None, logarithmic;
         /// Longest step near cloud but outside, relative to one in cloud; farther away steps are as long as the weather map allows. 1 takes equal steps everywhere.
-        empty_stride: f32 = 1.3, 1.0..=8.0, None;
+        empty_stride: f32 = 1.15, 1.0..=8.0, None;
         /// Clear air is crossed in one step as far as the weather map promises it.
         skip_clear: bool = true;
         /// Greatest distance at which clouds are drawn.
         max_distance_m: f32 = 350_000.0, 1000.0..=500_000.0, Metres, logarithmic;
         /// Steps from a sample towards the light; up to five times as many where layers are thick or the light is low.
-        light_steps: u32 = 20, 1..=128, None;
+        light_steps: u32 = 18, 1..=128, None;
         /// Longest way covered towards the light; shorter where it leaves the clouds before.
         light_reach_m: f32 = 100_000.0, 50.0..=500_000.0, Metres, logarithmic;
         /// Length of each light step relative to the one before, over a way of a kilometre; more over longer ways.
-        light_growth: f32 = 1.08, 1.0..=4.0, None;
+        light_growth: f32 = 1.1, 1.0..=4.0, None;
         /// How many of the light steps read the small noise.
         light_detail_steps: u32 = 6, 0..=128, None;
+        /// Nodes across a grid of the sun's optical depth, from which steps towards the light beyond the first few cells are read. 0 takes all steps.
+        light_grid: u32 = 256, 0..=384, None;
         /// Samples that follow each other inside cloud are lit as one until they send so much of what the eye sees. 0 lights each by itself.
-        light_share: f32 = 0.33, 0.0..=1.0, None;
+        light_share: f32 = 0.42, 0.0..=1.0, None;
         /// Octaves of multiple scattering on top of the first. 0 is true single scattering.
         octaves: u32 = 5, 0..=7, None;
         /// Transmittance below which a ray ends.
@@ -107,6 +109,7 @@ impl Quality {
                 step_depth: 2.5,
                 light_steps: 9,
                 light_growth: 1.2,
+                light_grid: 96,
                 light_detail_steps: 0,
                 octaves: 4,
                 pixel_samples: 1,
@@ -124,6 +127,7 @@ impl Quality {
                 empty_stride: 1.1,
                 light_steps: 24,
                 light_growth: 1.08,
+                light_grid: 384,
                 light_detail_steps: 10,
                 light_share: 0.2,
                 octaves: 6,
@@ -142,6 +146,7 @@ impl Quality {
                 empty_stride: 1.1,
                 light_steps: 36,
                 light_growth: 1.06,
+                light_grid: 0,
                 light_detail_steps: 24,
                 light_share: 0.05,
                 octaves: 7,
@@ -179,11 +184,12 @@ impl Quality {
     pub fn of_still(&self) -> Self {
         let scale = self.still_step;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
-        let view_steps = (self.view_steps as f32 / scale).ceil().min(1024.0) as u32;
+        let finer = |count: u32, most: f32| (count as f32 / scale).ceil().min(most) as u32;
         Self {
-            view_steps,
+            view_steps: finer(self.view_steps, 1024.0),
             step_m: self.step_m * scale,
             step_growth: self.step_growth * scale,
+            light_grid: finer(self.light_grid, 384.0),
             update: UpdateFraction::Full,
             still_step: 1.0,
             ..self.clone()

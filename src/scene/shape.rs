@@ -45,6 +45,13 @@ choices! {
     }
 }
 
+impl Shape {
+    /// Most from side to side, and from bottom to top.
+    pub const WIDEST_M: f32 = 100_000.0;
+    /// The same upwards.
+    pub const TALLEST_M: f32 = 20_000.0;
+}
+
 params! {
     /// A body with a place in the world.
     pub struct Shape ("Shape") {
@@ -63,11 +70,11 @@ params! {
         /// Height of its middle above sea level.
         height_m: f32 = 1900.0, -5000.0..=20_000.0, Metres;
         /// Its extent from west to east.
-        width_m: f32 = 2400.0, 0.0..=100_000.0, Metres;
+        width_m: f32 = 2400.0, 0.0..=Self::WIDEST_M, Metres;
         /// Its extent from north to south.
-        length_m: f32 = 2400.0, 0.0..=100_000.0, Metres;
+        length_m: f32 = 2400.0, 0.0..=Self::WIDEST_M, Metres;
         /// Its extent from bottom to top.
-        tall_m: f32 = 1400.0, 0.0..=20_000.0, Metres;
+        tall_m: f32 = 1400.0, 0.0..=Self::TALLEST_M, Metres;
         /// How far it is turned clockwise, seen from above.
         heading_deg: f32 = 0.0, -180.0..=180.0, Degrees;
         /// How far its top leans towards its heading.

@@ -82,6 +82,8 @@ files! {
     "pass/sky_view.wgsl",
     "pass/solids.wgsl",
     "pass/sun_depth.wgsl",
+    "pass/sun_grid.wgsl",
+    "pass/sun_sweep.wgsl",
     "pass/temporal.wgsl",
     "pass/terrain.wgsl",
     "pass/tonemap.wgsl",

@@ -74,11 +74,13 @@ pub(super) fn over_picture(
     let (is_down, begins) = ui.input(|input| (input.pointer.primary_down(), input.pointer.primary_pressed()));
     // Keys with the button are the camera's.
     let is_plain = ui.input(|input| input.modifiers.is_none() && !input.key_down(egui::Key::L));
-    let pointer = if is_down { response.interact_pointer_pos() } else { None };
+    // A click may be over before this is drawn.
+    let pointer = if is_down || begins { response.interact_pointer_pos() } else { None };
     let pointer = pointer.filter(|pointer| is_plain && place.contains(*pointer));
     // Who pressed the button elsewhere does not paint.
-    state.is_drawing = is_down && (state.is_drawing || begins && pointer.is_some());
-    if let Some(pointer) = pointer.filter(|_| state.is_drawing) {
+    let begins = begins && pointer.is_some();
+    state.is_drawing = is_down && (state.is_drawing || begins);
+    if let Some(pointer) = pointer.filter(|_| state.is_drawing || begins) {
         let at = (pointer - place.min) / place.size();
         let touch = Touch { at: [at.x, at.y], begins };
         if state.touches.last() != Some(&touch) {

@@ -188,7 +188,7 @@ pub(super) fn show(
     if state.is_choosing {
         choose_region(ui, (whole, &response), state);
     } else {
-        gestures(ui, &response, habit, &mut state.gestures);
+        gestures(ui, &response, (habit, paint.is_on), &mut state.gestures);
     }
 }
 
@@ -354,7 +354,7 @@ fn meaning(habit: Habit, button: PointerButton, modifiers: egui::Modifiers) -> O
     })
 }
 
-fn gestures(ui: &Ui, response: &egui::Response, habit: Habit, gestures: &mut Vec<Gesture>) {
+fn gestures(ui: &Ui, response: &egui::Response, (habit, paints): (Habit, bool), gestures: &mut Vec<Gesture>) {
     use PointerButton::{Middle, Primary, Secondary};
     let (pressed, modifiers, sun, wheel) = ui.input(|input| {
         (
@@ -383,7 +383,9 @@ fn gestures(ui: &Ui, response: &egui::Response, habit: Habit, gestures: &mut Vec
         gestures.push(Gesture::DragSun(drag));
         return;
     }
-    let held = [Primary, Middle, Secondary].into_iter().find(|button| response.dragged_by(*button));
+    // The plain button is the brush's.
+    let is_free = |button: &PointerButton| *button != Primary || !paints || modifiers.any();
+    let held = [Primary, Middle, Secondary].into_iter().filter(is_free).find(|button| response.dragged_by(*button));
     gestures.extend(held.and_then(|button| meaning(habit, button, modifiers)).map(|gesture| gesture(drag)));
 }
 

@@ -22,6 +22,7 @@ pub(crate) fn quick() -> Quality {
         view_steps: 64,
         step_m: 90.0,
         light_steps: 3,
+        light_grid: 0,
         octaves: 1,
         update: UpdateFraction::Full,
         shadow_map_px: 32,

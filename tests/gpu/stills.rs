@@ -127,6 +127,7 @@ fn layers_sum_to_the_picture_and_follow_their_lights() {
     scene.camera.heading_deg = scene.sun.azimuth_deg;
     scene.camera.pitch_deg = 30.0;
     scene.camera.field_of_view_deg = 70.0;
+    scene.scattering.glow = 0.5;
     let quality = Quality { octaves: 3, pixel_samples: 2, still_step: 1.0, ..quick() };
     let mut renderer = renderer();
     let mut layers_of = |scene: &Scene| {
@@ -143,7 +144,7 @@ fn layers_sum_to_the_picture_and_follow_their_lights() {
     };
     let whole = layers_of(&scene);
     let names: Vec<&str> = whole.lights.iter().map(|(name, _)| *name).collect();
-    assert_eq!(names, ["shafts", "multiple", "direct", "bounce", "ambient", "air", "disc", "backdrop"]);
+    assert_eq!(names, ["shafts", "glow", "multiple", "direct", "bounce", "ambient", "air", "disc", "backdrop"]);
     let greatest = whole.beauty.rgba.iter().flat_map(|pixel| &pixel[..3]).copied().fold(0.0, f32::max);
     for (index, pixel) in whole.beauty.rgba.iter().enumerate() {
         for channel in 0..3 {

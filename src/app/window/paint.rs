@@ -3,8 +3,10 @@
 use std::time::Duration;
 
 use super::App;
+use super::truth::STATUS;
 use crate::app::Action;
 use crate::app::brush::UnderWay;
+use crate::scene::Scene;
 
 impl App {
     /// Paints where the brush has touched the picture since the last time. Where a stroke begins, the clouds themselves tell how
@@ -20,14 +22,23 @@ impl App {
         let (mut done, mut map) = (0, None);
         let mut result = Ok(());
         for touch in &state.touches {
-            if touch.begins || self.session.stroke.is_none() {
+            if !touch.begins && self.session.stroke.is_none() {
+                // What is left of a stroke that could not go on.
+                done += 1;
+                continue;
+            }
+            if touch.begins {
                 let height_m = match live.viewport.pick(touch.at) {
                     // A shader is being compiled: these touches wait.
-                    Ok(None) => break,
+                    Ok(None) => {
+                        live.draw_within(STATUS);
+                        break;
+                    }
                     Ok(Some(picked)) => picked.position_m.map(|[_, height, _]| height),
                     Err(error) => {
                         self.session.ui.toasts.error(error);
                         state.touches.clear();
+                        self.session.stroke = None;
                         return;
                     }
                 };
@@ -43,7 +54,10 @@ impl App {
                 break;
             };
             result = stroke.touch(&mut scene, towards, document.time_secs());
-            map = Some(stroke.map());
+            let painted = |scene: &Scene| scene.weather.layers.get(stroke.map()).map_or(0, |map| map.strokes.dabs());
+            if painted(&scene) > painted(&document.preset().scene) {
+                map = Some(stroke.map());
+            }
             state.height_m = Some(stroke.height_m);
             done += 1;
             if result.is_err() {

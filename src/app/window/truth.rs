@@ -14,7 +14,7 @@ use crate::render::RenderError;
 use crate::ui::TruthView;
 
 /// Time between two frames of the panels that only say how far the truth is.
-const STATUS: Duration = Duration::from_millis(250);
+pub(super) const STATUS: Duration = Duration::from_millis(250);
 
 /// Whether somebody did something, rather than the system.
 pub(super) fn is_input(event: &WindowEvent) -> bool {

@@ -120,7 +120,14 @@ fn show(renderer: &mut Renderer, scene: &Scene, quality: &Quality) -> Result<Sho
 }
 
 pub(super) fn quality() -> Quality {
-    Quality { view_steps: 96, light_steps: 6, update: UpdateFraction::Full, shadow_map_px: 32, ..Quality::default() }
+    Quality {
+        view_steps: 96,
+        light_steps: 6,
+        light_grid: 0,
+        update: UpdateFraction::Full,
+        shadow_map_px: 32,
+        ..Quality::default()
+    }
 }
 
 /// A sky whose cloud is a slab, the same everywhere, seen straight up in plain light that is scattered once.

@@ -120,6 +120,7 @@ pub fn draw(index: u64, kinds: u64) -> Drawn {
     quality.visit(&mut drawing);
     // Small maps and pictures: what they show is checked, not how finely.
     quality.shadow_map_px = quality.shadow_map_px.min(64);
+    quality.light_grid = quality.light_grid.min(48);
     quality.resolution_scale = 1.0;
     for map in &mut scene.weather.layers {
         if !map.source.is_generated() {

@@ -210,7 +210,7 @@ impl Renderer {
 
 /// The program of an integrator.
 fn program(integrator: Integrator, march: MarchVariant) -> ProgramKey {
-    let flags = march.flags().filter(|flag| !matches!(*flag, "FLOAT" | "SKIP" | "DISTANCE"));
+    let flags = march.flags().filter(|flag| !matches!(*flag, "FLOAT" | "SKIP" | "DISTANCE" | "SUN_GRID"));
     if integrator == Integrator::PathTraced {
         field_key("pass/path_trace.wgsl", march).with_flags(flags).with_flags((!march.plain).then_some("EARTH"))
     } else {

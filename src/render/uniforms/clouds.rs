@@ -6,7 +6,8 @@ use super::camera::Eye;
 use super::scene::{LayerUniforms, SceneUniforms};
 use crate::plan::{KeyLight, Lighting};
 use crate::scene::{
-    BodyForm, Camera, CloudLayer, DensityModel, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scene, ShapeRole, Wind,
+    BodyForm, Camera, CloudLayer, DensityModel, DomainKind, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scene,
+    ShapeRole, Wind,
 };
 
 /// Velocity of the wind: east in x, south in y.
@@ -264,6 +265,25 @@ pub(crate) fn density_rounds(scene: &Scene) -> u32 {
     1 + rounds.sum::<u32>()
 }
 
+/// View steps for densities of so many rounds: as many as may be with one light step for each.
+fn view_rounds(rounds: u32, wanted: u32) -> u32 {
+    wanted.clamp(1, (MOST_ITERATIONS / rounds / 2).max(1))
+}
+
+/// Light steps for each of these view steps, where all of them together with the view steps are as many as may be.
+fn light_rounds(rounds: u32, view_steps: u32) -> u32 {
+    (MOST_ITERATIONS / rounds / view_steps).saturating_sub(1).max(1)
+}
+
+/// Extinction below which clouds are thin: fewer steps towards the light tell as much, down to half of them.
+const THIN_PER_M: f32 = 0.01;
+
+/// Steps towards the light for clouds that are nowhere denser.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and no more than before")]
+pub(crate) fn steps_through(extinction_per_m: f32, usual: u32) -> u32 {
+    (usual as f32 * (extinction_per_m / THIN_PER_M).powf(0.25).clamp(0.5, 1.0)).ceil() as u32
+}
+
 /// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many, and
 /// up to twice as many again if that is because the light is low.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and clamped")]
@@ -273,6 +293,23 @@ fn light_steps(usual: u32, thickness_m: f32, light_sine: f32) -> u32 {
     let low = (LOW_LIGHT / sine).powf(0.3).max(1.0);
     let more = (long * low).min(MOST_LIGHT_STEPS);
     ((usual as f32 * more).round() as u32).clamp(1, 128)
+}
+
+/// Thickness of a layer up to which steps along the ray are as long as the quality says, and how many times as long they
+/// are in the thickest.
+const USUAL_THICKNESS_M: f32 = 1800.0;
+const LONGEST_IN_THICK: f32 = 1.6;
+/// Extinction down to which they are, and how many times as long they are in the thinnest cloud.
+const USUAL_EXTINCTION_PER_M: f32 = 0.001;
+const LONGEST_IN_THIN: f32 = 1.15;
+
+/// Length of the steps along a ray relative to what the quality says: tall clouds are broad as well, and seen from far away,
+/// and a step through thin cloud sees little of it. Where all steps are to be equal, they are as told.
+fn step_scale(layers: &[&CloudLayer], extinction_per_m: f32, quality: &Quality) -> f32 {
+    let thickest_m = layers.iter().map(|layer| layer.top_m - layer.base_m).fold(0.0, f32::max);
+    let by_thickness = (thickest_m / USUAL_THICKNESS_M).sqrt().clamp(1.0, LONGEST_IN_THICK);
+    let by_extinction = (USUAL_EXTINCTION_PER_M / extinction_per_m).powf(0.25).clamp(1.0, LONGEST_IN_THIN);
+    if quality.empty_stride > 1.0 { by_thickness * by_extinction } else { 1.0 }
 }
 
 /// Radiance of the sky where the light is plain.
@@ -319,6 +356,12 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         Vec3::new(x as f32, height, z as f32)
     };
     let light = &scene.scattering;
+    let is_baked = quality.grid_voxels > 0 && domain.kind == DomainKind::Box;
+    let rounds = if is_baked { 1 } else { density_rounds(scene) };
+    let view_steps = view_rounds(rounds, quality.view_steps);
+    let extinctions = visible.iter().map(|layer| layer.extinction_per_m() * layer.density);
+    let greatest_extinction = extinctions.sum::<f32>().max(1e-12);
+    let step_scale = step_scale(&visible, greatest_extinction, quality);
     let sky = plain_sky(scene).unwrap_or(Vec3::ONE);
     SceneUniforms {
         towards_light: lighting.towards_key,
@@ -339,16 +382,22 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         },
         front: front(scene, eye, frame.time_secs),
         automaton_shares: automaton_shares(&visible, frame.time_secs),
+        sun_grid_place: Vec4::ZERO,
+        sun_grid_form: Vec4::ZERO,
         octave_extinction: light.octave_extinction,
         octave_energy: light.octave_energy,
         octave_anisotropy: light.octave_anisotropy,
         early_exit: quality.early_exit,
-        view_steps: quality.view_steps,
-        step_m: quality.step_m,
-        step_growth: quality.step_growth,
+        view_steps,
+        step_m: quality.step_m * step_scale,
+        step_growth: quality.step_growth * step_scale,
         empty_stride: quality.empty_stride,
-        light_steps: light_steps(quality.light_steps, highest_m - lowest_m, lighting.towards_key.y)
-            .min((MOST_ITERATIONS / density_rounds(scene) / quality.view_steps.max(1)).max(1)),
+        light_steps: light_steps(
+            steps_through(greatest_extinction, quality.light_steps),
+            highest_m - lowest_m,
+            lighting.towards_key.y,
+        )
+        .min(light_rounds(rounds, view_steps)),
         light_spread_per_m: quality.light_spread_per_m(),
         light_reach_m: quality.light_reach_m,
         light_detail_steps: quality.light_detail_steps,
@@ -357,8 +406,8 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         max_distance_m: quality.max_distance_m,
         step_depth: quality.step_depth,
         light_share: quality.light_share,
-        pad0: 0.0,
-        pad1: 0.0,
+        sun_grid_is_low: 0,
+        greatest_extinction,
         pad2: 0.0,
         layers,
     }
@@ -384,6 +433,18 @@ mod tests {
     fn body_at(model: DensityModel, coverage: f32, field: f32) -> f32 {
         let (scale, bias) = body(&CloudLayer { model, edge_softness: 0.25, ..CloudLayer::default() }, coverage);
         (field * scale + bias).clamp(0.0, 1.0)
+    }
+
+    #[test]
+    fn no_ray_has_more_rounds_than_a_driver_goes() {
+        for rounds in 1..=80 {
+            for wanted in [1, 4, 160, 1000, 1024] {
+                let view = view_rounds(rounds, wanted);
+                let all = rounds * view * (1 + light_rounds(rounds, view));
+                assert!((1..=MOST_ITERATIONS).contains(&all), "{rounds} x {wanted}: {all}");
+            }
+        }
+        assert_eq!((view_rounds(1, 1024), light_rounds(1, 160)), (1024, 299), "simple clouds are as they were told");
     }
 
     #[test]

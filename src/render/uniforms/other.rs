@@ -179,6 +179,14 @@ gpu_struct! {
         pub side: u32,
         /// 1 if they take paint away.
         pub restores: u32,
+        /// 1 if the map repeats.
+        pub repeats: u32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: u32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad1: u32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad2: u32,
     }
 
     /// How two states of a map join.

@@ -189,6 +189,10 @@ gpu_struct! {
         pub front: Vec4,
         /// Shares of the generations in the automaton's channels.
         pub automaton_shares: Vec4,
+        /// Middle of the grid of sun depth in xy, unit vector along the light's azimuth in zw.
+        pub sun_grid_place: Vec4,
+        /// Its finest length, hyperbolic angle of its edge, nodes across and upwards.
+        pub sun_grid_form: Vec4,
         /// Extinction of an octave relative to the one before.
         pub octave_extinction: f32,
         /// Energy of an octave relative to the one before.
@@ -223,10 +227,10 @@ gpu_struct! {
         pub step_depth: f32,
         /// What samples that are lit together may send, relative to all light that reaches the eye.
         pub light_share: f32,
-        /// Keeps the layers apart.
-        pub pad0: f32,
-        /// Keeps the layers apart.
-        pub pad1: f32,
+        /// Whether planes of the grid of sun depth follow each other sideways, as for low light.
+        pub sun_grid_is_low: u32,
+        /// Extinction of all layers where they are densest, in 1/m.
+        pub greatest_extinction: f32,
         /// Keeps the layers apart.
         pub pad2: f32,
         /// The layers; as many as the program was compiled for count.

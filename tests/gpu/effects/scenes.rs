@@ -325,6 +325,13 @@ pub(super) fn scenes(effect: Effect) -> Example {
             };
             example(base, OFF, &[OFF, SET, DARK], true)
         }
+        Effect::SunGrid => {
+            const ON: Change = |s| {
+                (s.quality.light_steps, s.quality.light_grid) = (12, 160);
+                s.scene.sun.elevation_deg = 12.0;
+            };
+            example(ON, |s| s.quality.light_grid = 0, &[], true)
+        }
         Effect::Octaves => {
             example(base, |s| s.quality.octaves = 0, &[|s| s.scene.scattering.octave_energy = 0.0], true)
         }

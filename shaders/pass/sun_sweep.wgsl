@@ -1,0 +1,84 @@
+// One plane of the grid of sun depth, from the plane before it on the side of the light: the cloud between the two along
+// the light, and what the plane before it has behind that (short characteristics; Kunasz & Auer 1988). Planes follow each
+// other downwards, or for low light along its azimuth.
+#import "generated/BandUniforms.wgsl"
+#import "pass/sun_depth.wgsl"
+#import "pass/sun_grid.wgsl"
+
+// Which plane.
+@group(0) @binding(0) var<uniform> band: BandUniforms;
+// Two planes that take turns.
+@group(2) @binding(0) var<storage, read_write> planes: array<f32>;
+@group(2) @binding(1) var sun_depths_out: texture_storage_3d<rgba16float, write>;
+
+// A sample stands for so much of the way, relative to a cell; and most samples between two planes.
+const SAMPLE_CELLS: f32 = 0.75;
+const MOST_SAMPLES: u32 = 8u;
+// Samples from the first plane out of the clouds, where that is not their top.
+const FIRST_SAMPLES: u32 = 16u;
+// More than even the widest octave lets pass.
+const OPAQUE: f32 = 1000.0;
+
+fn plane_value(at: vec2u, plane: u32, size: vec2u) -> f32 {
+  return planes[((plane & 1u) * size.y + at.y) * size.x + at.x];
+}
+
+fn value_ahead(node: vec2f, plane: u32, size: vec2u) -> f32 {
+  let low = min(vec2u(node), size - 1u);
+  let high = min(low + 1u, size - 1u);
+  let f = node - vec2f(low);
+  return mix(
+    mix(plane_value(low, plane, size), plane_value(vec2u(high.x, low.y), plane, size), f.x),
+    mix(plane_value(vec2u(low.x, high.y), plane, size), plane_value(high, plane, size), f.x), f.y);
+}
+
+// Distance along the light to the plane ahead.
+fn way_ahead(p: vec3f, node: vec3u) -> f32 {
+  let last = scene.sun_grid_form.zw - 1.0;
+  if (scene.sun_grid_is_low == 0u) {
+    let altitude = mix(scene.lowest_m, scene.highest_m, f32(node.y + 1u) / last.y);
+    if (DOMAIN == DOMAIN_SHELL) {
+      return max(shell_roots(p, scene.towards_light, altitude, scene.planet_radius_m).y, 0.0);
+    }
+    return (altitude - p.y) / scene.towards_light.y;
+  }
+  let ends = sun_grid_offset(2.0 * vec2f(f32(node.x), f32(node.x + 1u)) / last.x - 1.0);
+  return (ends.y - ends.x) / length(scene.towards_light.xz);
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+  let cells = vec2u(scene.sun_grid_form.zw);
+  let size = select(cells, cells.xx, scene.sun_grid_is_low == 0u);
+  if (any(id.xy >= size)) {
+    return;
+  }
+  let plane = band.first_row;
+  let node = select(vec3u(plane, id.y, id.x), vec3u(id.x, plane, id.y), scene.sun_grid_is_low == 0u);
+  let is_first = plane + 1u == select(cells.x, cells.y, scene.sun_grid_is_low == 0u);
+  let p = sun_grid_position(vec3f(node));
+  let out = domain_exit(p, scene.towards_light);
+  var way = min(out, scene.light_reach_m);
+  var samples = FIRST_SAMPLES;
+  if (!is_first) {
+    way = min(way_ahead(p, node), out);
+    samples = clamp(u32(ceil(way / (SAMPLE_CELLS * sun_grid_cell(p)))), 1u, MOST_SAMPLES);
+  }
+  let step = way / f32(samples);
+  let level = max(0.0, log2(step / FINEST_STEP_M) * 0.5);
+  var depth = 0.0;
+  if (!is_first || scene.sun_grid_is_low == 1u) {
+    for (var i = 0u; i < samples; i++) {
+      let q = p + scene.towards_light * ((f32(i) + 0.5) * step);
+      depth += shadow_extinction(q, Reading(level, false, 0.0, false)) * step;
+    }
+  }
+  if (!is_first) {
+    let ahead = sun_grid_node(p + scene.towards_light * way);
+    depth += sun_grid_depth(value_ahead(select(ahead.zy, ahead.xz, scene.sun_grid_is_low == 0u), plane + 1u, size));
+  }
+  depth = min(depth, OPAQUE);
+  let value = log(1.0 + depth);
+  planes[((plane & 1u) * size.y + id.y) * size.x + id.x] = value;
+  textureStore(sun_depths_out, node, vec4f(value));
+}
