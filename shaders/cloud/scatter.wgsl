@@ -15,7 +15,8 @@ fn ambient_share(h: f32, base_share: f32, density: f32, occlusion: f32) -> f32 {
 // A ray that stops at transmittance T < limit counts as opaque: the rest is spread over what it saw, so that no grey
 // film stays. Returns (T', factor on the light seen): T' = max(0, (T - limit) / (1 - limit)), L' = L (1 - T') / (1 - T).
 fn after_early_exit(transmittance: f32, limit: f32) -> vec2f {
-  let opened = max(0.0, (transmittance - limit) / (1.0 - limit));
-  let seen = 1.0 - transmittance;
-  return vec2f(opened, select((1.0 - opened) / max(seen, 1e-6), 1.0, seen <= 0.0));
+  if (transmittance > limit) {
+    return vec2f((transmittance - limit) / (1.0 - limit), 1.0 / (1.0 - limit));
+  }
+  return vec2f(0.0, 1.0 / (1.0 - transmittance));
 }

@@ -23,15 +23,22 @@ fn joined_distance(p: vec3f, first: u32, end: u32) -> f32 {
   return distance;
 }
 
-// What curvature and rounding may add to a distance where heights are measured from a round sea.
+// What rounding may add to a distance; and curvature, where heights are measured from a round sea: up to half of the way
+// over the planet's radius, from where the sea is level to where the distance ends.
 const TRUSTED: f32 = 0.95;
+const FLAT_WAY: f32 = 0.05;
+
+fn trusted(p: vec3f, distance: f32) -> f32 {
+  let way = 0.5 * (length(p.xz) + abs(distance)) * shapes.per_radius;
+  return distance * TRUSTED / (1.0 + max(way - FLAT_WAY, 0.0));
+}
 
 // Distance to clouds.
 fn cloud_shapes_distance(p: vec3f) -> f32 {
-  return joined_distance(p, 0u, shapes.clouds) * TRUSTED;
+  return trusted(p, joined_distance(p, 0u, shapes.clouds));
 }
 
 // Distance to solid things.
 fn solid_shapes_distance(p: vec3f) -> f32 {
-  return joined_distance(p, shapes.clouds, shapes.clouds + shapes.solids) * TRUSTED;
+  return trusted(p, joined_distance(p, shapes.clouds, shapes.clouds + shapes.solids));
 }

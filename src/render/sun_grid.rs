@@ -23,9 +23,10 @@ const UPWARDS: [u32; 2] = [8, 48];
 const JUMP_CELLS: f64 = 8.0;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// While pictures move, clouds may have changed by this part of a finest cell since the grid was made, and the light by
-/// this angle.
+/// While pictures move, clouds may have gone this part of a finest cell since the grid was made, or changed for so long where
+/// there is no wind, and the light may have turned by this angle.
 const STALE_CELLS: f64 = 0.4;
+const STALE_SECS: f64 = 10.0;
 const STALE_RAD: f32 = 0.002;
 
 /// What the grid depends on, apart from when it is.
@@ -89,8 +90,11 @@ impl SunGrid {
             program: key(march),
         };
         if let Some(made) = &self.made {
-            let behind = wind_mps(&frame.scene.wind).length() * (frame.time_secs - made.time_secs).abs();
+            let scales = frame.scene.visible_layers().map(|layer| f64::from(layer.wind_scale.abs()));
+            let elapsed = (frame.time_secs - made.time_secs).abs();
+            let behind = wind_mps(&frame.scene.wind).length() * scales.fold(0.0, f64::max) * elapsed;
             let is_near = plan.temporal.is_some()
+                && elapsed <= STALE_SECS
                 && behind <= STALE_CELLS * f64::from(finest_m(nodes))
                 && made.towards_light.angle_between(towards) <= STALE_RAD;
             let is_same = made.time_secs == frame.time_secs && made.towards_light == towards && made.counts == counts;

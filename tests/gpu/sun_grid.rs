@@ -2,7 +2,7 @@
 
 use nephoscope::render::LinearImage;
 use nephoscope::render::tables::TableKind;
-use nephoscope::scene::{CloudLayer, DensityModel, DomainKind, Frame, Output, Quality, Scene, UpdateFraction};
+use nephoscope::scene::{CloudLayer, DensityModel, DomainKind, Frame, Output, Quality, Scene, UpdateFraction, Wind};
 
 use crate::common::sky::{frame, quick, render, renderer};
 
@@ -96,16 +96,20 @@ fn a_picture_does_not_depend_on_where_the_eye_came_from() {
 fn moving_pictures_make_the_grid_anew_when_clouds_have_moved_and_stills_always() {
     let quality = Quality { light_grid: 64, update: UpdateFraction::Quarter, ..quick() };
     let scene = Scene::default();
-    let speed = f64::from(scene.wind.speed_mps);
+    let calm = Scene { wind: Wind { speed_mps: 0.0, ..scene.wind.clone() }, ..scene.clone() };
+    let seconds_for = |metres: f64| metres / f64::from(scene.wind.speed_mps);
     let mut renderer = renderer();
-    let mut sweeps = |travelled_m: f64, output: Output| {
-        let frame = Frame { time_secs: travelled_m / speed, ..frame(&scene, &quality, [32, 18], output) };
+    let mut sweeps = |scene: &Scene, time_secs: f64, output: Output| {
+        let frame = Frame { time_secs, ..frame(scene, &quality, [32, 18], output) };
         render(&mut renderer, &frame).passes.iter().any(|pass| pass.pass == "sun_sweep")
     };
-    sweeps(0.0, Output::Linear);
-    assert!(!sweeps(0.0, Output::Display), "it is there");
-    assert!(!sweeps(20.0, Output::Display), "a fraction of a cell");
-    assert!(sweeps(20.0, Output::Linear), "a file is exact");
-    assert!(!sweeps(20.0, Output::Linear), "and once it is");
-    assert!(sweeps(900.0, Output::Display), "several cells");
+    sweeps(&scene, 0.0, Output::Linear);
+    assert!(!sweeps(&scene, 0.0, Output::Display), "it is there");
+    assert!(!sweeps(&scene, seconds_for(20.0), Output::Display), "a fraction of a cell");
+    assert!(sweeps(&scene, seconds_for(20.0), Output::Linear), "a file is exact");
+    assert!(!sweeps(&scene, seconds_for(20.0), Output::Linear), "and once it is");
+    assert!(sweeps(&scene, seconds_for(900.0), Output::Display), "several cells");
+    sweeps(&calm, 0.0, Output::Display);
+    assert!(!sweeps(&calm, 5.0, Output::Display), "a moment without wind");
+    assert!(sweeps(&calm, 60.0, Output::Display), "clouds change without wind as well");
 }

@@ -35,7 +35,7 @@ const NIGHT: f64 = 2e-4;
 type Case = fn(&mut Renderer) -> Result<Finding, VerifyError>;
 
 /// All cases: a name, and what tries it.
-const CASES: [(&str, Case); 22] = [
+const CASES: [(&str, Case); 23] = [
     ("extinction towards 0", thin_cloud),
     ("extinction without end", thick_cloud),
     ("phase functions towards their poles", sharp_phases),
@@ -57,6 +57,7 @@ const CASES: [(&str, Case); 22] = [
     ("automata at their ends", models::automata),
     ("shapes of no size and of any", models::shapes),
     ("brushes at their ends", models::paintings),
+    ("the grid of sun depth from anywhere", models::sun_grids),
     ("the same picture twice", twice),
 ];
 
@@ -92,7 +93,7 @@ impl Shown {
         self.clouds.iter().map(|cloud| 1.0 - f64::from(cloud[3])).sum::<f64>() / self.clouds.len().max(1) as f64
     }
 
-    fn mean(&self) -> f64 {
+    pub(super) fn mean(&self) -> f64 {
         let light = self.image.rgba.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>();
         light / self.image.rgba.len().max(1) as f64
     }
@@ -115,7 +116,7 @@ pub(super) fn show_at(
     Ok(Shown { image: renderer.linear()?, clouds: renderer.clouds()? })
 }
 
-fn show(renderer: &mut Renderer, scene: &Scene, quality: &Quality) -> Result<Shown, VerifyError> {
+pub(super) fn show(renderer: &mut Renderer, scene: &Scene, quality: &Quality) -> Result<Shown, VerifyError> {
     show_at(renderer, (scene, quality), SIZE, 0.0)
 }
 

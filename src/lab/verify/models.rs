@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::VerifyError;
-use super::hard::{Finding, quality, show_at};
+use super::hard::{Finding, quality, show, show_at};
 use crate::render::Renderer;
 use crate::scene::{
-    Automaton, Brush, CloudKind, DensityModel, MAX_SHAPES, MapBlend, MapLayer, MapSource, Scene, Shape, ShapeJoin,
-    ShapeKind, ShapeRole, Stroke, Strokes,
+    Automaton, Brush, CloudKind, DensityModel, MAX_SHAPES, MapBlend, MapLayer, MapSource, Quality, Scene, Shape,
+    ShapeJoin, ShapeKind, ShapeRole, Stroke, Strokes,
 };
 
 /// A sky whose clouds have a model, from below them.
@@ -59,6 +59,32 @@ pub(super) fn automata(renderer: &mut Renderer) -> Result<Finding, VerifyError> 
         })
     });
     all_finite(renderer, cases, 0.01)
+}
+
+/// The grid of sun depth under low and high light, from below, inside, above and beside thin and tall clouds on small and
+/// large planets.
+pub(super) fn sun_grids(renderer: &mut Renderer) -> Result<Finding, VerifyError> {
+    let (mut tried, mut worst) = (0, 0.0_f64);
+    for (index, elevation_deg) in [-5.0, 0.0, 0.5, 20.4, 20.6, 90.0].into_iter().enumerate() {
+        for (height_m, top_m) in [(2.0, 1001.5), (1500.0, 3000.0), (19_000.0, 20_000.0)] {
+            let mut scene = sky(DensityModel::Profile);
+            (scene.sun.elevation_deg, scene.camera.height_m) = (elevation_deg, height_m);
+            (scene.layers[0].base_m, scene.layers[0].top_m) = (1000.0, top_m);
+            scene.domain.planet_radius_m = if index % 2 == 0 { 6_371_000.0 } else { 300_000.0 };
+            (scene.camera.east_m, scene.camera.pitch_deg) = (150_000.0, if height_m > top_m { -20.0 } else { 15.0 });
+            let with = |light_grid: u32| Quality { light_grid, light_steps: 12, ..quality() };
+            let [all, grid] = [0, 64].map(|nodes| show(renderer, &scene, &with(nodes)));
+            let (all, grid) = (all?, grid?);
+            if let Some(fault) = grid.fault() {
+                let name = format!("a sun at {elevation_deg}° seen from {height_m} m");
+                return Ok(Finding::that(false, "finite light", format!("{name}: {fault}")));
+            }
+            tried += 1;
+            worst = worst.max((grid.mean() / all.mean().max(1e-12) - 1.0).abs());
+        }
+    }
+    let seen = format!("{tried} skies, at most {:.1} % apart", 100.0 * worst);
+    Ok(Finding::that(worst < 0.2, "finite light, within a fifth of that of all steps", seen))
 }
 
 /// Shapes of no size, of all sizes, in and around the eye, and as many as there may be.

@@ -153,6 +153,14 @@ gpu_struct! {
         pub per_edge: f32,
         /// Apparent radius of the key light, in radians.
         pub light_radius: f32,
+        /// 1 over the planet's radius; 0 where the world is flat.
+        pub per_radius: f32,
+        /// Keeps the shapes apart.
+        pub pad0: f32,
+        /// Keeps the shapes apart.
+        pub pad1: f32,
+        /// Keeps the shapes apart.
+        pub pad2: f32,
         /// The shapes.
         pub list: [ShapeUniforms; 64],
     }

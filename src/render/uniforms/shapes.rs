@@ -6,7 +6,7 @@ use glam::{Quat, Vec3, Vec4};
 use super::camera::Eye;
 use super::other::{ShapeUniforms, ShapesUniforms};
 use crate::plan::{KeyLight, Lighting};
-use crate::scene::{MAX_SHAPES, Scene, Shape, ShapeJoin, ShapeKind, ShapeRole};
+use crate::scene::{DomainKind, MAX_SHAPES, Scene, Shape, ShapeJoin, ShapeKind, ShapeRole};
 
 /// Half the least extent, so that distances over it are numbers.
 const LEAST_HALF_M: f32 = 0.01;
@@ -24,6 +24,10 @@ pub(crate) fn shapes_uniforms(scene: &Scene, lighting: &Lighting, eye: &Eye) -> 
         solids: of(ShapeRole::Solid).count() as u32,
         per_edge: 1.0 / scene.shape_edge_m,
         light_radius: radius_deg.to_radians(),
+        per_radius: if scene.domain.kind == DomainKind::Shell { 1.0 / scene.domain.planet_radius_m } else { 0.0 },
+        pad0: 0.0,
+        pad1: 0.0,
+        pad2: 0.0,
         list,
     }
 }
