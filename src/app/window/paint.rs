@@ -6,7 +6,6 @@ use super::App;
 use super::truth::STATUS;
 use crate::app::Action;
 use crate::app::brush::UnderWay;
-use crate::scene::Scene;
 
 impl App {
     /// Paints where the brush has touched the picture since the last time. Where a stroke begins, the clouds themselves tell how
@@ -54,10 +53,7 @@ impl App {
                 break;
             };
             result = stroke.touch(&mut scene, towards, document.time_secs());
-            let painted = |scene: &Scene| scene.weather.layers.get(stroke.map()).map_or(0, |map| map.strokes.dabs());
-            if painted(&scene) > painted(&document.preset().scene) {
-                map = Some(stroke.map());
-            }
+            map = Some(stroke.map());
             state.height_m = Some(stroke.height_m);
             done += 1;
             if result.is_err() {
