@@ -14,7 +14,7 @@ mkdir "$made_folder/fronts"
     printf '# Quality against the converged truth\n\n'
     printf 'What these tables show is said in [README.md](README.md), how they are read in [accuracy.md](../accuracy.md).\n\n'
     "$program" accuracy "${skies[@]}" --size 96x54 --rounds 15 --tolerance 0.01 --md --plot "$made_folder/fronts/front.svg" \
-        --axis quality.light_steps=12,18,28 --axis quality.step_m=40,60,100 --max-error 0.1
+        --axis quality.light_steps=12,18,27 --axis quality.step_m=30,45,75 --max-error 0.1
 } >"$made_folder/accuracy.md"
 mkdir -p docs/measurements/fronts
 mv "$made_folder/accuracy.md" docs/measurements/accuracy.md

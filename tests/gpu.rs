@@ -9,8 +9,10 @@ mod gpu {
     mod display;
     mod effects;
     mod faults;
+    mod flow;
     mod frames;
     mod grid;
+    mod grown;
     mod lab;
     mod math;
     mod noise;

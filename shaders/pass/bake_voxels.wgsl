@@ -17,5 +17,5 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     return;
   }
   let place = mix(scene.box_min, scene.box_max, (vec3f(voxel) + 0.5) / vec3f(size));
-  textureStore(voxels_out, voxel, densities_at(place, Reading(0.0, true, 0.0, false)));
+  textureStore(voxels_out, voxel, densities_at(place, Reading(0.0, true, 0.0, vec3f(0.0))));
 }

@@ -1,6 +1,6 @@
 // How far it is from each cell to the nearest one that may hold cloud, one axis after the other (Felzenszwalb and
 // Huttenlocher, "Distance Transforms of Sampled Functions", 2012, by brute force): gaps between the cells' walls, so that
-// a way holds from anywhere in the cell. Across the map it repeats. A leaning layer is sheared, which the last axis pays.
+// a way holds from anywhere in the cell. Across the map it repeats. A leaning layer is sheared: see note_clear.
 #import "generated/BandUniforms.wgsl"
 #import "pass/cloud_field.wgsl"
 #import "pass/clear_way.wgsl"
@@ -23,13 +23,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     return;
   }
   var wall = vec4f(0.0);
-  var shear = vec4f(0.0);
   // Channels without a layer ask for nothing.
   var nearest = vec4f(0.0);
   for (var i = 0u; i < LAYERS; i++) {
     let layer = scene.layers[i];
     wall[i] = select(1.0 / layer.map_from_world.z, 1.0 / layer.per_thickness, AXIS == 1u) / f32(size[AXIS]);
-    shear[i] = 2.0 * length(layer.lean.xy) * layer.per_thickness;
     nearest[i] = FARTHEST_M;
   }
   let reach = select(size[AXIS] / 2, size[AXIS] - 1, AXIS == 1u);
@@ -49,7 +47,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
   }
   if (AXIS == 2u) {
-    nearest *= SAFE / (1.0 + shear);
+    nearest *= SAFE;
   }
   textureStore(ways_out, here, nearest);
 }

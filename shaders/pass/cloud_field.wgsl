@@ -76,8 +76,8 @@ struct Reading {
   detail: bool,
   // How far the small noise has faded to its mean, 0..1.
   fade: f32,
-  // Whether clear_way is asked for.
-  ways: bool,
+  // Along which direction clear_way is asked for; 0 if it is not.
+  towards: vec3f,
 }
 
 #if COUNT
@@ -89,7 +89,17 @@ var<private> counted_light_steps: u32;
 // steps by it, so that thin edges are not met by some pixels and missed by others.
 var<private> clearness: f32;
 
-// How far from the last place read, where it was clear, the map promises no cloud in any direction.
+// Extinction of the layer whose surface that is, where it is densest, in 1/m.
+var<private> clearness_extinction: f32;
+
+fn note_clearness(layer: LayerUniforms, of_layer: f32) {
+  if (of_layer < clearness) {
+    clearness = of_layer;
+    clearness_extinction = layer.extinction_per_m * layer.density_scale;
+  }
+}
+
+// How far from the last place read, where it was clear, no cloud is promised in the direction that was asked for.
 var<private> clear_way: f32;
 
 fn count_read() {
@@ -153,6 +163,20 @@ fn map_uv(layer: LayerUniforms, p: vec2f, h: f32) -> vec2f {
   return combed(layer, p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
 }
 
+// How far a place at a layer's top is carried when it rises, at most, relative to how far it rises.
+fn shear_of(layer: LayerUniforms) -> f32 {
+  return 2.0 * length(layer.lean.xy) * layer.per_thickness;
+}
+
+// How much a way rises or falls, at most, relative to its length.
+fn greatest_slope(p: vec3f, dir: vec3f, way: f32) -> f32 {
+  if (DOMAIN != DOMAIN_SHELL) {
+    return abs(dir.y);
+  }
+  let radius = length(vec3f(p.x, p.y + scene.planet_radius_m, p.z));
+  return min((abs(dot(p, dir) + scene.planet_radius_m * dir.y) + way) / max(radius - way, 1.0), 1.0);
+}
+
 // The greatest body where the map's field is at most so much.
 fn greatest_body(layer: LayerUniforms, field: f32) -> f32 {
   let body = body_of(field, vec2f(layer.body_scale, layer.body_bias));
@@ -163,16 +187,19 @@ fn greatest_body(layer: LayerUniforms, field: f32) -> f32 {
 #endif
 }
 
-// Called where the map says that a layer has no cloud: asks for how far.
-fn note_clear(index: u32, p: vec2f, h: f32, reading: Reading) {
+// Called where the map says that a layer has no cloud: asks for how far. Through a leaning layer the way that the map
+// promises is the shorter the steeper it is.
+fn note_clear(index: u32, p: vec3f, h: f32, reading: Reading) {
   var way = 0.0;
 #if SKIP
-  if (reading.ways) {
+  if (any(reading.towards != vec3f(0.0))) {
     count_read();
-    let uv = map_uv(scene.layers[index], p, h);
+    let layer = scene.layers[index];
+    let uv = map_uv(layer, p.xz, h);
     let cells = vec3f(textureDimensions(clear_ways));
     let cell = vec3u(min(vec3f(uv - floor(uv), h).xzy * cells, cells - 1.0));
-    way = textureLoad(clear_ways, cell, 0)[index];
+    let promised = textureLoad(clear_ways, cell, 0)[index];
+    way = promised / (1.0 + shear_of(layer) * greatest_slope(p, reading.towards, promised));
   }
 #endif
   clear_way = min(clear_way, way);
@@ -228,12 +255,12 @@ fn detail_texel(layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> vec
 fn profile_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let weather = weather_at(layer, p.xz, h);
   if (weather.body <= 0.0) {
-    note_clear(index, p.xz, h, reading);
+    note_clear(index, p, h, reading);
     return 0.0;
   }
   let profile = height_profile(weather, layer, h);
   if (profile_bound(profile, layer) <= 0.0) {
-    note_clear(index, p.xz, h, reading);
+    note_clear(index, p, h, reading);
     return 0.0;
   }
   return formed_at(layer, p, h, profile, weather, reading);
@@ -249,7 +276,7 @@ fn formed_at(layer: LayerUniforms, p: vec3f, h: f32, profile: f32, weather: Weat
   let noise = textureSampleLevel(shape_noise, linear_repeat, tile, reading.level);
   var field = billowed(profile, noise, weather, layer);
   if (field <= 0.0) {
-    clearness = min(clearness, -4.0 * field);
+    note_clearness(layer, -4.0 * field);
     return 0.0;
   }
   let firm = firmness(profile, noise, weather, layer);
@@ -262,7 +289,7 @@ fn formed_at(layer: LayerUniforms, p: vec3f, h: f32, profile: f32, weather: Weat
 #endif
     field = eroded(field, amount, firm);
     // Air that erosion has cleared lies deep in the field: steps in it need not all be short.
-    clearness = min(clearness, max(-0.35 * field, 0.0));
+    note_clearness(layer, max(-0.35 * field, 0.0));
   }
   return profile_density(field, firm, layer, h);
 }
@@ -272,7 +299,7 @@ fn formed_at(layer: LayerUniforms, p: vec3f, h: f32, profile: f32, weather: Weat
 fn automaton_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let weather = weather_at(layer, p.xz, h);
   if (weather.body <= 0.0) {
-    note_clear(index, p.xz, h, reading);
+    note_clear(index, p, h, reading);
     return 0.0;
   }
   count_read();
@@ -282,7 +309,7 @@ fn automaton_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Rea
   let cells = textureSampleLevel(automaton_cells, linear_repeat, place, 0.0);
   let profile = automaton_profile(dot(cells, scene.automaton_shares), weather, layer, h);
   if (profile_bound(profile, layer) <= 0.0) {
-    note_clear(index, p.xz, h, reading);
+    note_clear(index, p, h, reading);
     return 0.0;
   }
   return formed_at(layer, p, h, profile, weather, reading);
@@ -306,12 +333,12 @@ fn shapes_at(layer: LayerUniforms, p: vec3f, altitude: f32, h: f32, reading: Rea
 fn thesis_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let weather = weather_at(layer, p.xz, h);
   if (weather.body <= 0.0) {
-    note_clear(index, p.xz, h, reading);
+    note_clear(index, p, h, reading);
     return 0.0;
   }
   let profile = thesis_profile(weather, h);
   if (max(profile.x, max(profile.y, profile.z)) < THESIS_THRESHOLD) {
-    note_clear(index, p.xz, h, reading);
+    note_clear(index, p, h, reading);
     return 0.0;
   }
   clear_way = 0.0;
@@ -327,7 +354,7 @@ fn thesis_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readin
     field = thesis_eroded(field, noise, layer, reading.fade);
   }
 #endif
-  clearness = min(clearness, select(1.0, -10.0 * field, field <= 0.0));
+  note_clearness(layer, select(1.0, -10.0 * field, field <= 0.0));
   return thesis_density(field, layer);
 }
 #endif
@@ -337,7 +364,7 @@ fn texture_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Readi
   let texel = map_texel(layer, p.xz, h);
   var density = body_of(texel.r, cover_at(layer, p.xz));
   if (density <= 0.0) {
-    note_clear(index, p.xz, h, reading);
+    note_clear(index, p, h, reading);
     return 0.0;
   }
   clear_way = 0.0;
@@ -399,18 +426,18 @@ fn octaves_at(q: vec3f, from_world: vec4f, octaves: vec4f, channel: u32, level: 
 fn product_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Reading) -> f32 {
   let mask = weather_at(layer, p.xz, h).body;
   if (mask <= 0.0) {
-    note_clear(index, p.xz, h, reading);
+    note_clear(index, p, h, reading);
     return 0.0;
   }
   clear_way = 0.0;
   let q = noise_place(layer, p, h);
   let voronoi = octaves_at(q, layer.voronoi_from_world, layer.voronoi_octaves, 1u, reading.level);
   if (voronoi <= layer.voronoi_octaves.w) {
-    clearness = min(clearness, 4.0 * (layer.voronoi_octaves.w - voronoi));
+    note_clearness(layer, 4.0 * (layer.voronoi_octaves.w - voronoi));
     return 0.0;
   }
   let perlin = octaves_at(q, layer.perlin_from_world, layer.perlin_octaves, 0u, reading.level);
-  clearness = min(clearness, max(4.0 * (layer.perlin_octaves.w - perlin), 0.0));
+  note_clearness(layer, max(4.0 * (layer.perlin_octaves.w - perlin), 0.0));
   return product_density(perlin, voronoi, mask, layer);
 }
 #endif
@@ -429,12 +456,26 @@ fn voxels_at(p: vec2f, h: f32) -> vec4f {
 }
 #endif
 
+// From a place outside of a layer to where a ray enters its heights.
+fn way_to(layer: LayerUniforms, p: vec3f, dir: vec3f) -> f32 {
+  let top_m = layer.base_m + 1.0 / layer.per_thickness;
+  var ahead = Segments(vec2f(0.0), vec2f(0.0));
+  if (DOMAIN == DOMAIN_SHELL) {
+    ahead = shell_segments(p, dir, layer.base_m, top_m, scene.planet_radius_m);
+  } else {
+    ahead = slab_segments(p, dir, layer.base_m, top_m);
+  }
+  return select(FAR_M, ahead.first.x, ahead.first.y > ahead.first.x);
+}
+
 // Density of one layer, 0..1 times the artist's multiplier.
 fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {
   let layer = scene.layers[index];
   let h = (altitude - layer.base_m) * layer.per_thickness;
   if (h <= 0.0 || h >= 1.0) {
-    clear_way = min(clear_way, max(-h, h - 1.0) / layer.per_thickness);
+    if (any(reading.towards != vec3f(0.0))) {
+      clear_way = min(clear_way, way_to(layer, p, reading.towards));
+    }
     return 0.0;
   }
   var density = 0.0;

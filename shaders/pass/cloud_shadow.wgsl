@@ -28,7 +28,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let step = length / f32(SHADOW_STEPS);
     for (var i = 0u; i < SHADOW_STEPS; i++) {
       let q = p + ground.towards_light * (segment.x + (f32(i) + 0.5) * step);
-      let own = shadow_extinction(q, Reading(1.0, false, 1.0, false)) * step;
+      let own = shadow_extinction(q, Reading(1.0, false, 1.0, vec3f(0.0))) * step;
       depth += own;
       above += select(0.0, own, altitude_of(q) > ground.receiver_m);
     }

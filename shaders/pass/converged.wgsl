@@ -40,7 +40,7 @@ fn converged_sun_depth(p: vec3f) -> f32 {
   var depth = 0.0;
   var taken = 0u;
   for (var i = 0u; i < truth.light_steps; i++) {
-    depth += shadow_extinction(p + scene.towards_light * (t + 0.5 * step), Reading(0.0, true, 0.0, false)) * step;
+    depth += shadow_extinction(p + scene.towards_light * (t + 0.5 * step), Reading(0.0, true, 0.0, vec3f(0.0))) * step;
     t += step;
     step *= steps.y;
     taken += 1u;
@@ -93,7 +93,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let step = min(truth.view_step_m + truth.view_growth * t, end - t);
     let middle = t + 0.5 * step;
     let p = origin + dir * middle;
-    let densities = densities_at(p, Reading(0.0, true, 0.0, false));
+    let densities = densities_at(p, Reading(0.0, true, 0.0, vec3f(0.0)));
     let extinction = extinction_of(densities);
     if (extinction > 0.0) {
       let altitude = altitude_of(p);

@@ -26,6 +26,9 @@
 @group(2) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;
 #endif
 
+// No layer makes steps longer by as much.
+const LONGEST_SCALE: f32 = 100.0;
+
 struct Seen {
   light: vec3f,
   transmittance: f32,
@@ -66,8 +69,16 @@ fn key_light_near(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
 }
 #endif
 
-fn step_at(distance_m: f32) -> f32 {
-  return scene.step_m + scene.step_growth * distance_m;
+// As layers share a height they share the shortest step; between layers it is an ordinary one.
+fn step_at(distance_m: f32, altitude: f32) -> f32 {
+  var scale = LONGEST_SCALE;
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    let h = (altitude - layer.base_m) * layer.per_thickness;
+    // Rays begin on the layers' ends, but for rounding.
+    scale = min(scale, select(LONGEST_SCALE, layer.step_scale, abs(h - 0.5) < 0.51));
+  }
+  return (scene.step_m + scene.step_growth * distance_m) * select(scale, 1.0, scale == LONGEST_SCALE);
 }
 
 // Detail is whole up to half the distance at which it has faded to its mean.
@@ -75,8 +86,8 @@ fn detail_fade(distance_m: f32) -> f32 {
   return clamp(2.0 * distance_m / scene.detail_distance_m - 1.0, 0.0, 1.0);
 }
 
-fn noise_level(distance_m: f32) -> f32 {
-  return max(0.0, log2(max(step_at(distance_m) / FINEST_STEP_M, 1.0)) * 0.5 + scene.noise_level_bias);
+fn noise_level(step: f32) -> f32 {
+  return max(0.0, log2(max(step / FINEST_STEP_M, 1.0)) * 0.5 + scene.noise_level_bias);
 }
 
 // Samples that follow each other inside cloud are lit as one, at their common centre, until they send scene.light_share of
@@ -125,7 +136,7 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
     let p = origin + dir * t;
     let altitude = altitude_of(p);
 #if LIT
-    let depth = sun_optical_depth(p, noise_level(t));
+    let depth = sun_optical_depth(p, noise_level(step_at(t, altitude)), light_steps_of(waiting_densities[k]));
     let source = source_of(key_light_near(p, altitude, t), depth, altitude, waiting_densities[k]);
 #else
     let source = source_of(vec3f(0.0), 0.0, altitude, waiting_densities[k]);
@@ -165,14 +176,14 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
   let is_varied = scene.empty_stride > 1.0;
   // How much of the way before a sample counts as its own, so that even cloud absorbs what the whole stretch absorbs,
   // whatever the jitter.
-  var behind = jitter * step_at(segment.x);
+  var inside_step = step_at(segment.x, altitude_of(origin + dir * segment.x));
+  var behind = jitter * inside_step;
   var t = segment.x + behind;
   // How much of the last step nothing was known of: at first the way to the first sample, before which there may be a
   // surface, that of fog or of a box that cuts through cloud.
   var unseen = behind;
   // The nearest place that has cloud, where the surface is before it.
   var met = 0.0;
-  var inside_step = step_at(segment.x);
   var clear_samples = CLEAR_SAMPLES;
   while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
     steps_left -= 1u;
@@ -182,11 +193,13 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
 #if COUNT
     atomicAdd(&counters[1], 1u);
 #endif
-    let step = step_at(t);
+    let p = origin + dir * t;
+    let step = step_at(t, altitude_of(p));
     let fade = detail_fade(t);
     clearness = 1.0;
+    clearness_extinction = 1.0;
     clear_way = FAR_M;
-    let densities = densities_at(origin + dir * t, Reading(noise_level(t), fade < 1.0, fade, true));
+    let densities = densities_at(p, Reading(noise_level(step), fade < 1.0, fade, dir));
     let extinction = extinction_of(densities);
     let within_depth = max(SURFACE_DEPTH * scene.step_depth / max(extinction, 1e-9), 1e-6 * t);
     let surface_step = select(step, min(step * SURFACE_STEP, within_depth), is_varied);
@@ -195,7 +208,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       inside_step = 0.0;
       clear_samples += 1u;
       let stride = select(1.0, scene.empty_stride, clear_samples > CLEAR_SAMPLES);
-      let nearest = clamp(NEAREST_DEPTH * scene.step_depth / (scene.greatest_extinction * step), NEAREST_STRIDE, 1.0);
+      let nearest = clamp(NEAREST_DEPTH * scene.step_depth / max(clearness_extinction * step, 1e-9), NEAREST_STRIDE, 1.0);
       let near = step * select(1.0, stride * max(clearness, nearest), is_varied);
       // Where the map promises clear air, all of that way and a share of a step, or neighbours would go on in rows.
       let ahead = select(near, clear_way + jitter * near, is_varied && clear_way > near);

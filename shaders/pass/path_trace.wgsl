@@ -276,7 +276,7 @@ fn begin(dir: vec3f, start_m: f32, end_m: f32) {
 
 // One event of the ratio or the delta tracking at the path's new place, where the majorant is known.
 fn meet(majorant: Majorant, draw: f32) {
-  let densities = densities_at(path.position, Reading(0.0, true, 0.0, false));
+  let densities = densities_at(path.position, Reading(0.0, true, 0.0, vec3f(0.0)));
   let extinction = extinction_of(densities);
   if (extinction > majorant.extinction_per_m * 1.0001) {
     exceeded += 1u;

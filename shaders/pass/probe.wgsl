@@ -6,7 +6,7 @@
 
 @compute @workgroup_size(1)
 fn main() {
-  let densities = densities_at(probe[0].xyz, Reading(0.0, true, 0.0, false));
+  let densities = densities_at(probe[0].xyz, Reading(0.0, true, 0.0, vec3f(0.0)));
   probe[1] = densities;
   probe[2] = vec4f(extinction_of(densities), 0.0, 0.0, 0.0);
 }

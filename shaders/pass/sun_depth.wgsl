@@ -45,25 +45,34 @@ fn sun_depth_beyond(q: vec3f) -> f32 {
 }
 #endif
 
+// Steps towards the light from a place: fewer through thin layers tell as much.
+fn light_steps_of(densities: vec4f) -> u32 {
+  var share = 0.0;
+  for (var i = 0u; i < LAYERS; i++) {
+    share = max(share, select(0.0, scene.layers[i].light_steps_share, densities[i] > 0.0));
+  }
+  return max(u32(ceil(f32(scene.light_steps) * share)), 1u);
+}
+
 // Optical depth from a place towards the key light: the only way to ask for the sun's visibility through cloud.
 // Steps have each its own length (errata 6) and are sampled in their middle; they cover the reach, or the way out of the
 // domain where that is shorter.
-fn sun_optical_depth(p: vec3f, level: f32) -> f32 {
+fn sun_optical_depth(p: vec3f, level: f32, count: u32) -> f32 {
   let way = min(domain_exit(p, scene.towards_light), scene.light_reach_m);
 #if SUN_GRID
   let near = select(FAR_M, NEAR_CELLS * sun_grid_cell(p), sun_grid_holds(p));
   // The steps before the grid is read are those of a usual way, however long it is.
-  let steps = light_steps_over(min(way, max(near, USUAL_WAY_M)), scene.light_steps, scene.light_spread_per_m);
+  let steps = light_steps_over(min(way, max(near, USUAL_WAY_M)), count, scene.light_spread_per_m);
 #else
-  let steps = light_steps_over(way, scene.light_steps, scene.light_spread_per_m);
+  let steps = light_steps_over(way, count, scene.light_spread_per_m);
 #endif
   let by_depth = select(0.0, LIGHT_GROWTH_BY_DEPTH, steps.y > 1.0);
   var step = steps.x;
   var t = 0.0;
   var depth = 0.0;
-  for (var i = 0u; i < scene.light_steps; i++) {
+  for (var i = 0u; i < count; i++) {
     let q = p + scene.towards_light * (t + 0.5 * step);
-    let own = shadow_extinction(q, Reading(level, i < scene.light_detail_steps, 0.0, false)) * step;
+    let own = shadow_extinction(q, Reading(level, i < scene.light_detail_steps, 0.0, vec3f(0.0))) * step;
 #if COUNT
     counted_light_steps += 1u;
 #endif

@@ -70,7 +70,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   if (!is_first || scene.sun_grid_is_low == 1u) {
     for (var i = 0u; i < samples; i++) {
       let q = p + scene.towards_light * ((f32(i) + 0.5) * step);
-      depth += shadow_extinction(q, Reading(level, false, 0.0, false)) * step;
+      depth += shadow_extinction(q, Reading(level, false, 0.0, vec3f(0.0))) * step;
     }
   }
   if (!is_first) {

@@ -1,5 +1,5 @@
 // Evaluates the promise of clear air. Case: a = position, b = an offset of length 0..1. Results: how far from the position
-// the map promises no cloud, and the extinction at the position moved by that way times the offset, and by three ways.
+// towards the offset the map promises no cloud, and the extinction at the position moved by that way times the offset, and by three ways.
 #import "pass/cloud_field.wgsl"
 #import "test/eval_io.wgsl"
 
@@ -9,10 +9,11 @@ fn main(@builtin(global_invocation_id) at: vec3u) {
   if (!is_case(id)) { return; }
   let p = bitcast<vec4f>(cases[id.x].a).xyz;
   let offset = bitcast<vec4f>(cases[id.x].b).xyz;
-  let all = Reading(0.0, true, 0.0, true);
+  let all = Reading(0.0, true, 0.0, normalize(offset));
   clear_way = FAR_M;
   let here = extinction_of(densities_at(p, all));
-  let way = select(clear_way, 0.0, here > 0.0);
+  // Without end where no layer is ahead.
+  let way = select(min(clear_way, 60000.0), 0.0, here > 0.0);
   let there = extinction_of(densities_at(p + offset * way, all));
   let beyond = extinction_of(densities_at(p + offset * 3.0 * way, all));
   store(id, vec4f(way, there, beyond, here));

@@ -11,6 +11,6 @@ fn main(@builtin(global_invocation_id) at: vec3u) {
   let layer = scene.layers[0];
   let h = (p.y - layer.base_m) * layer.per_thickness;
   let body = weather_at(layer, p.xz, h).body;
-  let density = layer_density(0u, p, altitude_of(p), Reading(0.0, true, 0.0, false));
+  let density = layer_density(0u, p, altitude_of(p), Reading(0.0, true, 0.0, vec3f(0.0)));
   store(id, vec4f(density, density_bound(layer, body), body, h));
 }

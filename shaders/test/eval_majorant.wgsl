@@ -11,6 +11,6 @@ fn main(@builtin(global_invocation_id) at: vec3u) {
   let offset = bitcast<vec4f>(cases[id.x].b).xyz;
   let majorant = majorant_at(p, normalize(offset));
   let q = p + offset * min(majorant.reach_m, 5000.0);
-  let extinction = extinction_of(densities_at(q, Reading(0.0, true, 0.0, false)));
+  let extinction = extinction_of(densities_at(q, Reading(0.0, true, 0.0, vec3f(0.0))));
   store(id, vec4f(majorant.extinction_per_m, majorant.reach_m, extinction, 0.0));
 }

@@ -13,6 +13,7 @@ use glam::UVec3;
 
 use super::accuracy::{AccuracyError, TruthImage, truth};
 use crate::gpu::GpuError;
+use crate::plan::Lighting;
 use crate::reference::random::{pcg3d, unit_from_bits};
 use crate::render::truth::{Convergence, Goal};
 use crate::render::{RenderError, Renderer};
@@ -115,9 +116,11 @@ impl Agreement {
 /// Extinction of the clouds that are compared, relative to the sky's own. Through a thick deck light scattered once hardly
 /// passes, and the few paths that see any say little.
 const THINNING: f32 = 0.05;
-/// Optical depth, straight up through all layers, that is left at most: under a closed sheet of more, light scattered once is a
-/// matter of luck.
+/// Optical depth towards the light through all layers that is left at most: under a closed sheet of more, light scattered once
+/// is a matter of luck, and so is the spread of its paths.
 const THICKEST: f32 = 3.0;
+/// Least sine of the light's elevation that counts: lower ways are curved.
+const LOWEST_SINE: f32 = 0.03;
 
 /// The sky as both integrators can see it: the key light scattered once, no other light on the clouds, no air before
 /// them, the same extinction towards the light as along the ray, and thin enough for light to pass.
@@ -127,7 +130,8 @@ fn single_scattering(scene: &Scene) -> Scene {
     single.air.aerial_perspective = false;
     single.sunshafts.strength = 0.0;
     let depth_of = |layer: &CloudLayer| layer.extinction_per_m() * layer.density * (layer.top_m - layer.base_m);
-    let depth: f32 = scene.visible_layers().map(depth_of).sum();
+    let sine = Lighting::new(scene).towards_key.y.abs().max(LOWEST_SINE);
+    let depth = scene.visible_layers().map(depth_of).sum::<f32>() / sine;
     let thinning = THINNING.min(THICKEST / depth.max(f32::MIN_POSITIVE));
     for layer in &mut single.layers {
         *layer = layer.with_given_optics();

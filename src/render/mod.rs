@@ -9,6 +9,8 @@ mod bakes;
 mod blue_noise;
 mod clearance;
 mod context;
+mod flow;
+mod grown;
 mod interactive;
 mod layers;
 pub mod meter;

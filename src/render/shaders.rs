@@ -2,8 +2,9 @@
 
 use super::uniforms::air::AirUniforms;
 use super::uniforms::other::{
-    AutomatonUniforms, BlendUniforms, DisplayUniforms, GlowUniforms, GroundUniforms, MapUniforms, PaintUniforms,
-    PlainUniforms, ReliefUniforms, ShaftUniforms, ShapeUniforms, ShapesUniforms, TruthUniforms,
+    AutomatonUniforms, BlendUniforms, DisplayUniforms, FlowUniforms, GlowUniforms, GroundUniforms, GrowUniforms,
+    MapUniforms, PaintUniforms, PlainUniforms, ReliefUniforms, ShaftUniforms, ShapeUniforms, ShapesUniforms,
+    TruthUniforms,
 };
 use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
 use crate::gpu::ShaderTable;
@@ -69,8 +70,10 @@ pub const TABLE: ShaderTable = ShaderTable {
         BlendUniforms::GENERATED,
         CameraUniforms::GENERATED,
         DisplayUniforms::GENERATED,
+        FlowUniforms::GENERATED,
         GlowUniforms::GENERATED,
         GroundUniforms::GENERATED,
+        GrowUniforms::GENERATED,
         LayerUniforms::GENERATED,
         MapUniforms::GENERATED,
         PaintUniforms::GENERATED,

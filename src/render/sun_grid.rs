@@ -9,7 +9,7 @@ use super::context::{Bound, Context, Extent};
 use super::passes::{field_key, view_of};
 use super::uniforms::other::ShapesUniforms;
 use super::uniforms::scene::{BandUniforms, SceneUniforms};
-use super::uniforms::{Eye, field_uniforms, scene_uniforms, shapes_uniforms, steps_through, wind_mps};
+use super::uniforms::{Eye, field_uniforms, scene_uniforms, shapes_uniforms, wind_mps};
 use crate::gpu::{GpuError, Job, ProgramKey, Texture};
 use crate::plan::{FramePlan, Lighting, MarchVariant, SunGridPlan};
 use crate::scene::{Automaton, Frame, Weather};
@@ -133,7 +133,7 @@ impl SunGrid {
             sun_grid_place: Vec4::new(place.x, place.y, azimuth.x, azimuth.y),
             sun_grid_form: form(made.from.nodes),
             // What long ways need more steps for is read from the grid.
-            light_steps: scene.light_steps.min(steps_through(scene.greatest_extinction, frame.quality.light_steps)),
+            light_steps: scene.light_steps.min(frame.quality.light_steps),
             ..scene
         }
     }

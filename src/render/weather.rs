@@ -5,15 +5,17 @@ use std::path::{Path, PathBuf};
 
 use super::RenderError;
 use super::context::{Bound, Context, Extent};
+use super::flow;
+use super::grown::Example;
 use super::paint::{Painting, blend_key};
-use super::uniforms::other::{BlendUniforms, MapUniforms};
+use super::uniforms::other::{BlendUniforms, FlowUniforms, MapUniforms};
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
-use crate::images::map::read_map_image;
+use crate::images::map::{MapImage, read_map_image};
 use crate::images::pattern::FramePattern;
 use crate::scene::{MapBlend, MapEdge, MapLayer, MapSource, Strokes, Weather};
 
 /// Edge length of the map.
-const SIDE: u32 = 512;
+pub(super) const SIDE: u32 = 512;
 /// Cells across the map that a layer's reach is that of.
 pub(super) const CELLS: u32 = 64;
 /// Cells across the map for which tracking knows its greatest field, by the names that shaders give them.
@@ -21,8 +23,8 @@ const TRACKING_CELLS: [(&str, u32); 4] =
     [("bound_of_32", 32), ("bound_of_64", 64), ("bound_of_128", 128), ("bound_of_256", 256)];
 /// Largest user image.
 const LARGEST_IMAGE: u32 = 4096;
-/// States of a generated map in the time in which it becomes another; between two of them it is blended.
-const STATES: f64 = 16.0;
+/// States of a map in the time in which it becomes another; between two of them it is blended.
+pub(super) const STATES: i64 = 16;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// What one layer looks like at a state of its evolution.
@@ -30,6 +32,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 enum StateKey {
     Generated { layer: MapLayer, state: i64 },
     Image(PathBuf),
+    Grown { layer: MapLayer, state: i64 },
 }
 
 /// How a layer joins those below it, and how much of it counts.
@@ -42,6 +45,8 @@ enum LayerKey {
     Between([StateKey; 2], f32, Joining),
     /// How much of it counts, and whether the map repeats.
     Painted(Strokes, f32, bool),
+    /// What a flow has done.
+    Flow(FlowUniforms),
 }
 
 #[derive(Debug)]
@@ -54,6 +59,8 @@ struct State {
 #[derive(Debug)]
 pub(super) struct WeatherMap {
     states: Vec<State>,
+    /// Images that maps grow from.
+    examples: Vec<Example>,
     /// The joined map of each layer over those below it; the last is the map.
     joined: Vec<Texture>,
     /// The greatest field of the map around each of its cells, by name, where paths track by it.
@@ -70,6 +77,7 @@ impl WeatherMap {
     pub(super) fn new() -> Self {
         Self {
             states: Vec::new(),
+            examples: Vec::new(),
             joined: Vec::new(),
             bounds: Vec::new(),
             made_from: Vec::new(),
@@ -94,13 +102,17 @@ impl WeatherMap {
                 LayerKey::Between(states, ..) => {
                     for key in states {
                         if !self.states.iter().any(|state| state.key == *key) {
-                            let texture = make_state(context, key, jobs).map_err(|error| error.in_layer(index))?;
+                            let texture = match key {
+                                StateKey::Grown { layer, state } => self.grown(context, (layer, *state), jobs),
+                                _ => make_state(context, key, jobs),
+                            };
+                            let texture = texture.map_err(|error| error.in_layer(index))?;
                             self.states.push(State { key: key.clone(), texture });
                         }
                     }
                 }
                 LayerKey::Painted(strokes, ..) if !is_painted => *strokes = Strokes::default(),
-                LayerKey::Painted(..) => {}
+                LayerKey::Painted(..) | LayerKey::Flow(_) => {}
             }
             wanted.push(key);
         }
@@ -109,6 +121,10 @@ impl WeatherMap {
             wanted.iter().any(|layer| matches!(layer, LayerKey::Between(states, ..) if states.contains(&state.key)))
         };
         self.states.retain(is_wanted);
+        let is_used = |example: &Example| {
+            weather.layers.iter().any(|layer| layer.source == MapSource::Grown && layer.image.0 == example.name)
+        };
+        self.examples.retain(is_used);
         if is_same {
             return Ok(());
         }
@@ -155,6 +171,23 @@ impl WeatherMap {
         all.map(|(name, texture)| (name, wgpu::BindingResource::TextureView(&texture.view))).collect()
     }
 
+    /// A map that grows out of an image, which is read once.
+    fn grown(
+        &mut self,
+        context: &Context<'_>,
+        (layer, state): (&MapLayer, i64),
+        jobs: &mut Vec<Job>,
+    ) -> Result<Texture, StateError> {
+        let name = &layer.image.0;
+        if !self.examples.iter().any(|example| example.name == *name) {
+            let image = read(Path::new(name))?;
+            self.examples.push(Example::new(context.gpu, name, &image)?);
+        }
+        let example = self.examples.iter().find(|example| example.name == *name);
+        let example = example.ok_or_else(|| StateError::Image(format!("{name} is gone")))?;
+        Ok(example.grown(context, (layer, state), &repeat_sampler(context.gpu), jobs)?)
+    }
+
     fn join(&mut self, context: &Context<'_>, wanted: &[LayerKey], jobs: &mut Vec<Job>) -> Result<(), GpuError> {
         self.joined.truncate(wanted.len());
         while self.joined.len() < wanted.len() {
@@ -167,6 +200,10 @@ impl WeatherMap {
                 LayerKey::Between(states, share, joining) => (states, share, joining),
                 LayerKey::Painted(strokes, opacity, repeats) => {
                     self.lay_over(context, index, (strokes, *opacity, *repeats), jobs)?;
+                    continue;
+                }
+                LayerKey::Flow(uniforms) => {
+                    self.carry(context, (index, &linear_repeat), uniforms, jobs)?;
                     continue;
                 }
             };
@@ -217,6 +254,27 @@ impl WeatherMap {
         Ok(())
     }
 
+    /// Carries the map below a flow. Below the lowest there is nothing, which no layer but a flow is over.
+    fn carry(
+        &mut self,
+        context: &Context<'_>,
+        (index, sampler): (usize, &wgpu::Sampler),
+        uniforms: &FlowUniforms,
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), GpuError> {
+        let nothing = Texture::new_2d(context.gpu, "weather_map", [1; 2], FORMAT)?;
+        let below = index.checked_sub(1).map_or(&nothing, |below| &self.joined[below]);
+        let buffer = context.gpu.uniform("flow", bytemuck::bytes_of(uniforms));
+        let bound = vec![
+            ("flow", buffer.as_entire_binding()),
+            ("linear_repeat", wgpu::BindingResource::Sampler(sampler)),
+            ("map_below", wgpu::BindingResource::TextureView(&below.view)),
+            ("map_out", wgpu::BindingResource::TextureView(&self.joined[index].view)),
+        ];
+        jobs.push(context.whole("weather_map", &flow::key(), &bound, Extent::image([SIDE; 2]))?);
+        Ok(())
+    }
+
     /// Forgets everything, as when no cloud is drawn.
     pub(super) fn clear(&mut self) {
         *self = Self { count: self.count, ..Self::new() };
@@ -232,8 +290,19 @@ impl WeatherMap {
         let states = self.states.iter().map(|state| &state.texture);
         let painted = self.paintings.values().map(|painting| painting.buffer().size()).sum::<u64>();
         let textures = states.chain(&self.joined).chain(self.bounds.iter().map(|(_, bound)| bound));
-        painted + textures.map(Texture::bytes).sum::<u64>()
+        let examples = self.examples.iter().map(Example::bytes).sum::<u64>();
+        painted + examples + textures.map(Texture::bytes).sum::<u64>()
     }
+}
+
+/// Which state a map is in that evolves, and the share of the next.
+#[allow(clippy::cast_possible_truncation, reason = "counts of states are small; shares are in 0..1")]
+fn evolution(weather: &Weather, time_secs: f64) -> (i64, f32) {
+    let period = f64::from(weather.evolution_secs);
+    let position = if period > 0.0 { time_secs / period * STATES as f64 } else { 0.0 };
+    let state = position.floor();
+    // The blend moves in steps of 1/64, below what can be seen, so that it need not run in every frame.
+    (state as i64, (((position - state) * 64.0).floor() / 64.0) as f32)
 }
 
 /// What a layer is at a time.
@@ -244,15 +313,17 @@ fn layer_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<Layer
     let layer = &MapLayer { blend: MapBlend::Densest, opacity: 1.0, ..layer.clone() };
     match layer.source {
         MapSource::Generated | MapSource::WeatherTexture => {
-            let period = f64::from(weather.evolution_secs);
-            let position = if period > 0.0 { time_secs / period * STATES } else { 0.0 };
-            let state = position.floor();
-            let key = |state: f64| StateKey::Generated { layer: layer.clone(), state: state as i64 };
-            // The blend moves in steps of 1/64, below what can be seen, so that it need not run in every frame.
-            let share = ((position - state) * 64.0).floor() / 64.0;
-            let after = if share > 0.0 { key(state + 1.0) } else { key(state) };
-            Ok(LayerKey::Between([key(state), after], share as f32, joining))
+            let (state, share) = evolution(weather, time_secs);
+            let key = |state| StateKey::Generated { layer: layer.clone(), state };
+            Ok(LayerKey::Between([key(state), key(state + i64::from(share > 0.0))], share, joining))
         }
+        MapSource::Grown => {
+            named(layer)?;
+            let (state, share) = evolution(weather, time_secs);
+            let key = |state| StateKey::Grown { layer: layer.clone(), state };
+            Ok(LayerKey::Between([key(state), key(state + i64::from(share > 0.0))], share, joining))
+        }
+        MapSource::Flow => Ok(LayerKey::Flow(flow::at(layer, weather, time_secs))),
         MapSource::Painted => Ok(LayerKey::Painted(layer.strokes.clone(), joining.1, weather.edge == MapEdge::Repeat)),
         MapSource::Image => {
             let name = named(layer)?;
@@ -321,7 +392,7 @@ fn make_state(context: &Context<'_>, key: &StateKey, jobs: &mut Vec<Job>) -> Res
             let texture = Texture::new_2d(context.gpu, "weather_state", [SIDE; 2], FORMAT)?;
             let cells = f64::from(layer.large_cells.max(1));
             // One large cell on the third axis in the time in which the map becomes another; whole tiles repeat.
-            let phase = (*state as f64 / STATES / cells).rem_euclid(1.0);
+            let phase = (*state as f64 / STATES as f64 / cells).rem_euclid(1.0);
             let map = MapUniforms {
                 seed: layer.seed,
                 large_cells: layer.large_cells,
@@ -346,19 +417,34 @@ fn make_state(context: &Context<'_>, key: &StateKey, jobs: &mut Vec<Job>) -> Res
             Ok(texture)
         }
         StateKey::Image(path) => {
-            let image = read_map_image(path, LARGEST_IMAGE).map_err(|error| StateError::Image(error.to_string()))?;
-            let texture = Texture::new_2d(context.gpu, "weather_image", [image.width, image.height], FORMAT)?;
-            let halfs: Vec<[half::f16; 4]> =
-                image.rgba.iter().map(|texel| texel.map(|value| half::f16::from_f32(value.clamp(0.0, 1.0)))).collect();
-            context.gpu.queue.write_texture(
-                texture.texture.as_image_copy(),
-                bytemuck::cast_slice(&halfs),
-                wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(image.width * 8), rows_per_image: None },
-                texture.texture.size(),
-            );
-            Ok(texture)
+            let image = read(path)?;
+            Ok(uploaded(context.gpu, ("weather_image", [image.width, image.height]), &image.rgba)?)
         }
+        // Not without what it grows from.
+        StateKey::Grown { layer, .. } => Err(StateError::Image(format!("{} is not at hand", layer.image.0))),
     }
+}
+
+fn read(path: &Path) -> Result<MapImage, StateError> {
+    read_map_image(path, LARGEST_IMAGE).map_err(|error| StateError::Image(error.to_string()))
+}
+
+/// A texture of values in 0..1.
+pub(super) fn uploaded(
+    gpu: &Gpu,
+    (label, size): (&'static str, [u32; 2]),
+    rgba: &[[f32; 4]],
+) -> Result<Texture, GpuError> {
+    let texture = Texture::new_2d(gpu, label, size, FORMAT)?;
+    let halfs: Vec<[half::f16; 4]> =
+        rgba.iter().map(|texel| texel.map(|value| half::f16::from_f32(value.clamp(0.0, 1.0)))).collect();
+    gpu.queue.write_texture(
+        texture.texture.as_image_copy(),
+        bytemuck::cast_slice(&halfs),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0] * 8), rows_per_image: None },
+        texture.texture.size(),
+    );
+    Ok(texture)
 }
 
 fn repeat_sampler(gpu: &Gpu) -> wgpu::Sampler {

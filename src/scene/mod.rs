@@ -43,7 +43,7 @@ pub use preset::{
 pub use quality::{Quality, QualityLevel, UpdateFraction, UpdateOrder};
 pub use shape::{MAX_SHAPES, Shape, ShapeJoin, ShapeKind, ShapeRole};
 pub use sun_position::{CITIES, Moment};
-pub use weather::{MapBlend, MapEdge, MapLayer, MapSource, Weather, Wind};
+pub use weather::{FlowKind, MapBlend, MapEdge, MapLayer, MapSource, Weather, Wind};
 
 use crate::params;
 

@@ -48,13 +48,13 @@ params! {
         /// Most steps along a view ray.
         view_steps: u32 = 160, 4..=1024, None;
         /// Length of the first step inside cloud; up to 1.6 times as long where a layer is thicker than 1.8 km, and a little longer in very thin cloud.
-        step_m: f32 = 60.0, 1.0..=1000.0, Metres, logarithmic;
+        step_m: f32 = 45.0, 1.0..=1000.0, Metres, logarithmic;
         /// Growth of the step with distance: metres more per metre.
-        step_growth: f32 = 0.0042, 0.0..=0.1, None;
+        step_growth: f32 = 0.0038, 0.0..=0.1, None;
         /// Optical depth of a step inside dense cloud; the step is never longer than its length by distance.
         step_depth: f32 = 1.0, 0.02..=10_000.0, None, logarithmic;
         /// Longest step near cloud but outside, relative to one in cloud; farther away steps are as long as the weather map allows. 1 takes equal steps everywhere.
-        empty_stride: f32 = 1.15, 1.0..=8.0, None;
+        empty_stride: f32 = 1.2, 1.0..=8.0, None;
         /// Clear air is crossed in one step as far as the weather map promises it.
         skip_clear: bool = true;
         /// Greatest distance at which clouds are drawn.
@@ -68,9 +68,9 @@ params! {
         /// How many of the light steps read the small noise.
         light_detail_steps: u32 = 6, 0..=128, None;
         /// Nodes across a grid of the sun's optical depth, from which steps towards the light beyond the first few cells are read. 0 takes all steps.
-        light_grid: u32 = 256, 0..=384, None;
+        light_grid: u32 = 320, 0..=384, None;
         /// Samples that follow each other inside cloud are lit as one until they send so much of what the eye sees. 0 lights each by itself.
-        light_share: f32 = 0.42, 0.0..=1.0, None;
+        light_share: f32 = 0.45, 0.0..=1.0, None;
         /// Octaves of multiple scattering on top of the first. 0 is true single scattering.
         octaves: u32 = 5, 0..=7, None;
         /// Transmittance below which a ray ends.

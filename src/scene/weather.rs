@@ -13,10 +13,28 @@ choices! {
         WeatherTexture ("Generated weather texture"),
         /// A PNG or EXR image of the user's.
         Image ("Image"),
+        /// An image of the user's that lives: more of its kind grows beyond its border, and it becomes another of its kind.
+        Grown ("Image, growing"),
         /// A numbered sequence of images, played over time.
         Sequence ("Image sequence"),
         /// Strokes of the brush, over what the layers below have.
         Painted ("Painted"),
+        /// No cloud of its own: a flow that carries what the layers below have.
+        Flow ("Flow"),
+    }
+}
+
+choices! {
+    /// How a flow carries the map below it.
+    pub enum FlowKind {
+        /// All of it, beside the wind.
+        Uniform ("Uniform"),
+        /// In circles about a place, the inner ones faster; clockwise at positive speeds.
+        Vortex ("Vortex"),
+        /// Along a band.
+        Band ("Band"),
+        /// To and fro, in stripes as wide as half of the map.
+        Shear ("Shear"),
     }
 }
 
@@ -56,7 +74,7 @@ impl MapSource {
 
     /// Whether the wind carries it.
     pub fn drifts(self) -> bool {
-        self.is_generated() || self == Self::Painted
+        self.is_generated() || matches!(self, Self::Painted | Self::Grown | Self::Flow)
     }
 }
 
@@ -67,6 +85,8 @@ params! {
         source: MapSource = MapSource::Generated;
         /// Image file (red: cumulus, green: stratus, blue: stratocumulus, each the greatest density there; for the model of weather textures coverage, height and altitude), or the pattern of a sequence such as `map.####.png`.
         image: FileName = FileName::default();
+        /// Width of an image that grows relative to the map, in whose middle it lies at time 0.
+        image_share: f32 = 0.5, 0.1..=1.0, None;
         /// How the layer joins those below it. A painted one lies over them.
         blend: MapBlend = MapBlend::Densest;
         /// How much of the layer counts.
@@ -75,7 +95,7 @@ params! {
         images_per_sec: f32 = 1.0, 0.001..=60.0, None, logarithmic;
         /// Strokes of the brush in the window, for a painted layer; what they cover replaces the layers below.
         strokes: Strokes = Strokes::default();
-        /// Seed of the generated map.
+        /// Seed of the generated map, and of what grows about an image.
         seed: u32 = 1, 0..=999_999, None;
         /// Large cells across the map; each is a field of cloud.
         large_cells: u32 = 8, 2..=32, None;
@@ -91,6 +111,20 @@ params! {
         stratus: f32 = 0.0, 0.0..=1.0, None;
         /// Probability weight of stratocumulus cells.
         stratocumulus: f32 = 0.0, 0.0..=1.0, None;
+        /// How a flow carries the map.
+        flow: FlowKind = FlowKind::Vortex;
+        /// Place of a flow, from the map's western edge, in edges of the map.
+        flow_east: f32 = 0.5, 0.0..=1.0, None;
+        /// Place of a flow, from the map's northern edge, in edges of the map.
+        flow_south: f32 = 0.5, 0.0..=1.0, None;
+        /// Radius of a vortex, half the width of a band, in edges of the map.
+        flow_radius: f32 = 0.3, 0.01..=0.5, None;
+        /// Greatest speed of a flow.
+        flow_mps: f32 = 10.0, -100.0..=100.0, MetresPerSecond;
+        /// Where a flow goes, clockwise from north; bands and shear keep to eighths of a turn, so that they repeat with the map.
+        flow_heading_deg: f32 = 90.0, 0.0..=360.0, Degrees;
+        /// Time after which a flow begins anew, in turns with another, so that nothing is wound up for ever.
+        flow_secs: f32 = 1800.0, 10.0..=100_000.0, Seconds, logarithmic;
     }
 }
 
@@ -111,9 +145,9 @@ params! {
         size_m: f32 = 24_000.0, 1000.0..=500_000.0, Metres, logarithmic;
         /// What lies beyond the edge of the map.
         edge: MapEdge = MapEdge::Repeat;
-        /// Whether the map moves with the wind, if all of it is generated or painted.
+        /// Whether the map moves with the wind, if all of it is generated, painted, growing or flow.
         moves: bool = true;
-        /// Time in which the generated map becomes another. 0 holds it still.
+        /// Time in which a generated map, or one that grows, becomes another. 0 holds it still.
         evolution_secs: f32 = 1200.0, 0.0..=100_000.0, Seconds;
         /// Layers of the map, from the bottom.
         layers: Vec<MapLayer> = vec![MapLayer::default()];

@@ -92,6 +92,8 @@ files! {
     "pass/watch.wgsl",
     "pass/weather_blend.wgsl",
     "pass/weather_bound.wgsl",
+    "pass/weather_flow.wgsl",
+    "pass/weather_grow.wgsl",
     "pass/weather_map.wgsl",
     "pass/weather_paint.wgsl",
     "test/eval_clear.wgsl",

@@ -56,6 +56,8 @@ pub(crate) fn uniform_layer(base_m: f32, top_m: f32, extinction_per_m: f32) -> L
         shadow_extinction_scale: 1.0,
         sun_gain: 1.0,
         ambient_gain: 1.0,
+        step_scale: 1.0,
+        light_steps_share: 1.0,
         model: UNIFORM,
         ..LayerUniforms::zeroed()
     }

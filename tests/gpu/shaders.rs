@@ -80,7 +80,11 @@ fn reachable() -> BTreeMap<String, ProgramKey> {
         randomise(&mut quality, seed);
         scenes.push((scene, quality));
     }
-    let mut keys = vec![ProgramKey::plain("pass/weather_blend.wgsl").with_flags(["BELOW"])];
+    let mut keys = vec![
+        ProgramKey::plain("pass/weather_blend.wgsl").with_flags(["BELOW"]),
+        ProgramKey::plain("pass/weather_grow.wgsl"),
+        ProgramKey::plain("pass/weather_flow.wgsl"),
+    ];
     keys.extend(watch::programs());
     for (scene, quality) in &scenes {
         for output in [Output::Display, Output::Linear, Output::CloudsAlone] {

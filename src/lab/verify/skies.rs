@@ -122,8 +122,9 @@ pub fn draw(index: u64, kinds: u64) -> Drawn {
     quality.shadow_map_px = quality.shadow_map_px.min(64);
     quality.light_grid = quality.light_grid.min(48);
     quality.resolution_scale = 1.0;
-    for map in &mut scene.weather.layers {
-        if !map.source.is_generated() {
+    for (index, map) in scene.weather.layers.iter_mut().enumerate() {
+        let is_carried = index > 0 && map.source == MapSource::Flow;
+        if !map.source.is_generated() && !is_carried {
             map.source = MapSource::Generated;
         }
     }
@@ -387,7 +388,9 @@ pub fn shrink(
         next.quality.visit(&mut reset);
         let count = reset.at;
         if reset.is_changed && next.scene.problems().is_empty() && is_faulty(&next)? {
+            // And again, as a list may have more to lose.
             least = next;
+            continue;
         }
         target += 1;
         if target >= count {

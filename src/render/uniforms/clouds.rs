@@ -154,7 +154,12 @@ fn combing(scene: &Scene, layer: &CloudLayer) -> Vec4 {
     along.extend(1.0 - 1.0 / layer.stretch).extend(0.0)
 }
 
-fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) -> LayerUniforms {
+fn layer_uniforms(
+    (scene, quality): (&Scene, &Quality),
+    layer: &CloudLayer,
+    eye: &Eye,
+    time_secs: f64,
+) -> LayerUniforms {
     let wind = wind_mps(&scene.wind) * f64::from(layer.wind_scale);
     let place = |speed: f32, rise: f32, is_combed: bool| {
         let here = DVec2::new(eye.position.x, eye.position.z) - wind * f64::from(speed) * time_secs;
@@ -219,6 +224,10 @@ fn layer_uniforms(scene: &Scene, layer: &CloudLayer, eye: &Eye, time_secs: f64) 
         back_g: layer.phase.back_g,
         back_mix: layer.phase.back_mix,
         body_scale_beyond,
+        step_scale: step_scale(layer, quality),
+        light_steps_share: light_steps_share(layer),
+        pad0: 0.0,
+        pad1: 0.0,
     }
 }
 
@@ -278,10 +287,14 @@ fn light_rounds(rounds: u32, view_steps: u32) -> u32 {
 /// Extinction below which clouds are thin: fewer steps towards the light tell as much, down to half of them.
 const THIN_PER_M: f32 = 0.01;
 
-/// Steps towards the light for clouds that are nowhere denser.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count, and no more than before")]
-pub(crate) fn steps_through(extinction_per_m: f32, usual: u32) -> u32 {
-    (usual as f32 * (extinction_per_m / THIN_PER_M).powf(0.25).clamp(0.5, 1.0)).ceil() as u32
+/// Extinction of a layer where it is densest, in 1/m.
+fn greatest_extinction(layer: &CloudLayer) -> f32 {
+    (layer.extinction_per_m() * layer.density).max(1e-12)
+}
+
+/// How many steps towards the light a layer takes, relative to a dense one.
+fn light_steps_share(layer: &CloudLayer) -> f32 {
+    (greatest_extinction(layer) / THIN_PER_M).powf(0.25).clamp(0.5, 1.0)
 }
 
 /// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many, and
@@ -297,18 +310,19 @@ fn light_steps(usual: u32, thickness_m: f32, light_sine: f32) -> u32 {
 
 /// Thickness of a layer up to which steps along the ray are as long as the quality says, and how many times as long they
 /// are in the thickest.
-const USUAL_THICKNESS_M: f32 = 1800.0;
-const LONGEST_IN_THICK: f32 = 1.6;
+const USUAL_THICKNESS_M: f32 = 1200.0;
+const LONGEST_IN_THICK: f32 = 2.05;
 /// Extinction down to which they are, and how many times as long they are in the thinnest cloud.
 const USUAL_EXTINCTION_PER_M: f32 = 0.001;
 const LONGEST_IN_THIN: f32 = 1.15;
 
-/// Length of the steps along a ray relative to what the quality says: tall clouds are broad as well, and seen from far away,
-/// and a step through thin cloud sees little of it. Where all steps are to be equal, they are as told.
-fn step_scale(layers: &[&CloudLayer], extinction_per_m: f32, quality: &Quality) -> f32 {
-    let thickest_m = layers.iter().map(|layer| layer.top_m - layer.base_m).fold(0.0, f32::max);
-    let by_thickness = (thickest_m / USUAL_THICKNESS_M).sqrt().clamp(1.0, LONGEST_IN_THICK);
-    let by_extinction = (USUAL_EXTINCTION_PER_M / extinction_per_m).powf(0.25).clamp(1.0, LONGEST_IN_THIN);
+/// Length of the steps along a ray in a layer relative to what the quality says: tall clouds are broad as well, and seen
+/// from far away, and a step through thin cloud sees little of it. Where all steps are to be equal, they are as told.
+fn step_scale(layer: &CloudLayer, quality: &Quality) -> f32 {
+    // A layer is as thick as its shapes need room, however small they are.
+    let thickness_m = if layer.model == DensityModel::Shapes { 0.0 } else { layer.top_m - layer.base_m };
+    let by_thickness = (thickness_m / USUAL_THICKNESS_M).sqrt().clamp(1.0, LONGEST_IN_THICK);
+    let by_extinction = (USUAL_EXTINCTION_PER_M / greatest_extinction(layer)).powf(0.25).clamp(1.0, LONGEST_IN_THIN);
     if quality.empty_stride > 1.0 { by_thickness * by_extinction } else { 1.0 }
 }
 
@@ -346,7 +360,7 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
     let lowest_m = if lowest_m.is_finite() { lowest_m } else { 0.0 };
     let mut layers = [LayerUniforms::default_empty(); MAX_LAYERS];
     for (slot, layer) in layers.iter_mut().zip(&visible) {
-        *slot = layer_uniforms(scene, layer, eye, frame.time_secs);
+        *slot = layer_uniforms((scene, quality), layer, eye, frame.time_secs);
     }
     let domain = &scene.domain;
     let centre = [f64::from(domain.box_east_m) - eye.position.x, f64::from(domain.box_south_m) - eye.position.z];
@@ -359,9 +373,6 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
     let is_baked = quality.grid_voxels > 0 && domain.kind == DomainKind::Box;
     let rounds = if is_baked { 1 } else { density_rounds(scene) };
     let view_steps = view_rounds(rounds, quality.view_steps);
-    let extinctions = visible.iter().map(|layer| layer.extinction_per_m() * layer.density);
-    let greatest_extinction = extinctions.sum::<f32>().max(1e-12);
-    let step_scale = step_scale(&visible, greatest_extinction, quality);
     let sky = plain_sky(scene).unwrap_or(Vec3::ONE);
     SceneUniforms {
         towards_light: lighting.towards_key,
@@ -389,15 +400,11 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         octave_anisotropy: light.octave_anisotropy,
         early_exit: quality.early_exit,
         view_steps,
-        step_m: quality.step_m * step_scale,
-        step_growth: quality.step_growth * step_scale,
+        step_m: quality.step_m,
+        step_growth: quality.step_growth,
         empty_stride: quality.empty_stride,
-        light_steps: light_steps(
-            steps_through(greatest_extinction, quality.light_steps),
-            highest_m - lowest_m,
-            lighting.towards_key.y,
-        )
-        .min(light_rounds(rounds, view_steps)),
+        light_steps: light_steps(quality.light_steps, highest_m - lowest_m, lighting.towards_key.y)
+            .min(light_rounds(rounds, view_steps)),
         light_spread_per_m: quality.light_spread_per_m(),
         light_reach_m: quality.light_reach_m,
         light_detail_steps: quality.light_detail_steps,
@@ -407,8 +414,8 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         step_depth: quality.step_depth,
         light_share: quality.light_share,
         sun_grid_is_low: 0,
-        greatest_extinction,
         pad2: 0.0,
+        pad3: 0.0,
         layers,
     }
 }

@@ -197,6 +197,46 @@ gpu_struct! {
         pub pad2: u32,
     }
 
+    /// A flow that carries the map below.
+    pub struct FlowUniforms {
+        /// Its place on the map.
+        pub centre: Vec2,
+        /// Where it flows.
+        pub along: Vec2,
+        /// Across it; its lines come again after 1.
+        pub across: Vec2,
+        /// How far each of two has come: radians of a vortex, edges of the map of the others.
+        pub amounts: Vec2,
+        /// How much the first of them counts.
+        pub share: f32,
+        /// Its radius, in edges of the map.
+        pub radius: f32,
+        /// Which kind.
+        pub kind: u32,
+        /// Whether the map repeats.
+        pub repeats: u32,
+    }
+
+    /// A map that grows out of an image.
+    pub struct GrowUniforms {
+        /// Seed of the patches.
+        pub seed: u32,
+        /// Cells of the patches' lattice across the map.
+        pub cells: u32,
+        /// How often the map has become another.
+        pub epoch: u32,
+        /// And how far it is towards the next, 0..1.
+        pub phase: f32,
+        /// Width of the image relative to the map.
+        pub image_share: f32,
+        /// How much of the image itself is left, 0..1.
+        pub image_weight: f32,
+        /// Width of a patch relative to the image.
+        pub patch_share: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+    }
+
     /// How two states of a map join.
     pub struct BlendUniforms {
         /// Share of the later one.

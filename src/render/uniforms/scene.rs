@@ -157,6 +157,14 @@ gpu_struct! {
         pub back_mix: f32,
         /// Factor from map to body beyond the front.
         pub body_scale_beyond: f32,
+        /// Length of the steps along a ray in this layer, relative to ordinary ones.
+        pub step_scale: f32,
+        /// How many steps towards the light its places take, relative to those of dense cloud.
+        pub light_steps_share: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+        /// The same.
+        pub pad1: f32,
     }
 
     /// All cloud layers, the light on them, and how they are marched.
@@ -229,10 +237,10 @@ gpu_struct! {
         pub light_share: f32,
         /// Whether planes of the grid of sun depth follow each other sideways, as for low light.
         pub sun_grid_is_low: u32,
-        /// Extinction of all layers where they are densest, in 1/m.
-        pub greatest_extinction: f32,
         /// Keeps the layers apart.
         pub pad2: f32,
+        /// The same.
+        pub pad3: f32,
         /// The layers; as many as the program was compiled for count.
         pub layers: [LayerUniforms; 4],
     }
