@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Measures settings round the default quality of built-in skies against the converged truth, and writes
 # docs/measurements/accuracy.md and a plot of each sky's front.
-# Arguments: names of skies; all of them by default, which take a quarter of an hour on two cores: a low sun has a long way
-# through the clouds.
+# Arguments: names of skies; all of them by default, which take some two hours on two cores: a low sun has a long way
+# through the clouds, and thick clouds have fine steps.
 set -euo pipefail
 skies=("${@:-all}")
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh" run

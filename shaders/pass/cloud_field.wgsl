@@ -86,17 +86,16 @@ var<private> counted_light_steps: u32;
 #endif
 
 // How near the last place read was to a surface, where it was clear: 1 far away, towards 0 near. The march shortens its
-// steps by it, so that thin edges are not met by some pixels and missed by others.
+// steps by it, so that thin edges are not met by some pixels and missed by others; less where a layer is no denser than
+// what a whole step may leap into, in 1/m, which the march says.
 var<private> clearness: f32;
+var<private> sparse_extinction: f32;
 
-// Extinction of the layer whose surface that is, where it is densest, in 1/m.
-var<private> clearness_extinction: f32;
+const LEAST_CLEARNESS: f32 = 0.25;
 
 fn note_clearness(layer: LayerUniforms, of_layer: f32) {
-  if (of_layer < clearness) {
-    clearness = of_layer;
-    clearness_extinction = layer.extinction_per_m * layer.density_scale;
-  }
+  let extinction = max(layer.extinction_per_m * layer.density_scale, 1e-12);
+  clearness = min(clearness, max(of_layer, clamp(sparse_extinction / extinction, LEAST_CLEARNESS, 1.0)));
 }
 
 // How far from the last place read, where it was clear, no cloud is promised in the direction that was asked for.
@@ -163,19 +162,6 @@ fn map_uv(layer: LayerUniforms, p: vec2f, h: f32) -> vec2f {
   return combed(layer, p - layer.lean.xy * h * h) * layer.map_from_world.z + layer.map_from_world.xy;
 }
 
-// How far a place at a layer's top is carried when it rises, at most, relative to how far it rises.
-fn shear_of(layer: LayerUniforms) -> f32 {
-  return 2.0 * length(layer.lean.xy) * layer.per_thickness;
-}
-
-// How much a way rises or falls, at most, relative to its length.
-fn greatest_slope(p: vec3f, dir: vec3f, way: f32) -> f32 {
-  if (DOMAIN != DOMAIN_SHELL) {
-    return abs(dir.y);
-  }
-  let radius = length(vec3f(p.x, p.y + scene.planet_radius_m, p.z));
-  return min((abs(dot(p, dir) + scene.planet_radius_m * dir.y) + way) / max(radius - way, 1.0), 1.0);
-}
 
 // The greatest body where the map's field is at most so much.
 fn greatest_body(layer: LayerUniforms, field: f32) -> f32 {
@@ -198,8 +184,15 @@ fn note_clear(index: u32, p: vec3f, h: f32, reading: Reading) {
     let uv = map_uv(layer, p.xz, h);
     let cells = vec3f(textureDimensions(clear_ways));
     let cell = vec3u(min(vec3f(uv - floor(uv), h).xzy * cells, cells - 1.0));
-    let promised = textureLoad(clear_ways, cell, 0)[index];
-    way = promised / (1.0 + shear_of(layer) * greatest_slope(p, reading.towards, promised));
+    way = textureLoad(clear_ways, cell, 0)[index];
+    // How far a place is carried at most as it rises, relative to how far it rises.
+    let shear = 2.0 * length(layer.lean.xy) * layer.per_thickness;
+    if (DOMAIN == DOMAIN_SHELL) {
+      let slope = steepest(p, reading.towards, way, scene.planet_radius_m);
+      way /= (1.0 + shear * slope) * flattening(p, way, scene.planet_radius_m);
+    } else {
+      way /= 1.0 + shear * abs(reading.towards.y);
+    }
   }
 #endif
   clear_way = min(clear_way, way);
@@ -319,7 +312,11 @@ fn automaton_at(index: u32, layer: LayerUniforms, p: vec3f, h: f32, reading: Rea
 #if SHAPES
 fn shapes_at(layer: LayerUniforms, p: vec3f, altitude: f32, h: f32, reading: Reading) -> f32 {
   let distance = cloud_shapes_distance(vec3f(p.x, altitude, p.z));
-  clear_way = min(clear_way, max(distance, 0.0));
+  var way = max(distance, 0.0);
+  if (DOMAIN == DOMAIN_SHELL) {
+    way /= flattening(p, way, scene.planet_radius_m);
+  }
+  clear_way = min(clear_way, way);
   let profile = shapes_profile(distance);
   if (profile_bound(profile, layer) <= 0.0) {
     return 0.0;

@@ -136,7 +136,7 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
     let p = origin + dir * t;
     let altitude = altitude_of(p);
 #if LIT
-    let depth = sun_optical_depth(p, noise_level(step_at(t, altitude)), light_steps_of(waiting_densities[k]));
+    let depth = sun_optical_depth(p, noise_level(step_at(t, altitude)), light_steps_of(altitude, waiting_densities[k]));
     let source = source_of(key_light_near(p, altitude, t), depth, altitude, waiting_densities[k]);
 #else
     let source = source_of(vec3f(0.0), 0.0, altitude, waiting_densities[k]);
@@ -160,9 +160,7 @@ const SURFACE_STEP: f32 = 0.1;
 const SURFACE_DEPTH: f32 = 0.5;
 // Clear samples after which steps become longer.
 const CLEAR_SAMPLES: u32 = 4u;
-// Shortest step before a surface, relative to ordinary ones: that of clouds which an ordinary step at most so deep, in
-// ordinary optical depths, may leap into.
-const NEAREST_STRIDE: f32 = 0.25;
+// How deep, in ordinary optical depths, an ordinary step may leap into cloud.
 const NEAREST_DEPTH: f32 = 0.25;
 // Steps inside begin short and grow by this: clouds are thin at their surface, where the light is, and by its extinction
 // alone the first sample would stand for a long way into denser cloud.
@@ -197,7 +195,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     let step = step_at(t, altitude_of(p));
     let fade = detail_fade(t);
     clearness = 1.0;
-    clearness_extinction = 1.0;
+    sparse_extinction = NEAREST_DEPTH * scene.step_depth / step;
     clear_way = FAR_M;
     let densities = densities_at(p, Reading(noise_level(step), fade < 1.0, fade, dir));
     let extinction = extinction_of(densities);
@@ -208,10 +206,13 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       inside_step = 0.0;
       clear_samples += 1u;
       let stride = select(1.0, scene.empty_stride, clear_samples > CLEAR_SAMPLES);
-      let nearest = clamp(NEAREST_DEPTH * scene.step_depth / max(clearness_extinction * step, 1e-9), NEAREST_STRIDE, 1.0);
-      let near = step * select(1.0, stride * max(clearness, nearest), is_varied);
-      // Where the map promises clear air, all of that way and a share of a step, or neighbours would go on in rows.
-      let ahead = select(near, clear_way + jitter * near, is_varied && clear_way > near);
+      let near = step * select(1.0, stride * clearness, is_varied);
+      var ahead = near;
+      if (is_varied && clear_way > near) {
+        // Where the map promises clear air, all of that way and a share of a step there, or neighbours would go on in rows.
+        let there = min(t + clear_way, segment.y);
+        ahead = clear_way + jitter * max(near, step_at(there, altitude_of(origin + dir * there)));
+      }
       let advanced = select(ahead, min(max(0.5 * (met - t), surface_step), met - t), t < met);
       unseen = advanced - min(clear_way, advanced);
       // On average cloud begins half way through what was not seen.

@@ -45,11 +45,14 @@ fn sun_depth_beyond(q: vec3f) -> f32 {
 }
 #endif
 
-// Steps towards the light from a place: fewer through thin layers tell as much.
-fn light_steps_of(densities: vec4f) -> u32 {
+// Steps towards the light from a place: fewer tell as much where all layers are thin that it lies in or that are before it.
+fn light_steps_of(altitude: f32, densities: vec4f) -> u32 {
+  let rises = scene.towards_light.y > 0.0;
   var share = 0.0;
   for (var i = 0u; i < LAYERS; i++) {
-    share = max(share, select(0.0, scene.layers[i].light_steps_share, densities[i] > 0.0));
+    let layer = scene.layers[i];
+    let is_ahead = select(altitude > layer.base_m, altitude < layer.base_m + 1.0 / layer.per_thickness, rises);
+    share = max(share, select(0.0, layer.light_steps_share, densities[i] > 0.0 || is_ahead));
   }
   return max(u32(ceil(f32(scene.light_steps) * share)), 1u);
 }

@@ -12,8 +12,13 @@ fn main(@builtin(global_invocation_id) at: vec3u) {
   let all = Reading(0.0, true, 0.0, normalize(offset));
   clear_way = FAR_M;
   let here = extinction_of(densities_at(p, all));
-  // Without end where no layer is ahead.
-  let way = select(min(clear_way, 60000.0), 0.0, here > 0.0);
+  // Without end where no layer is ahead before the ground.
+  var ahead = min(clear_way, 60000.0);
+  let ground = shell_roots(p, normalize(offset), 0.0, scene.planet_radius_m);
+  if (DOMAIN == DOMAIN_SHELL && ground.x > 0.0) {
+    ahead = min(ahead, ground.x);
+  }
+  let way = select(ahead, 0.0, here > 0.0);
   let there = extinction_of(densities_at(p + offset * way, all));
   let beyond = extinction_of(densities_at(p + offset * 3.0 * way, all));
   store(id, vec4f(way, there, beyond, here));

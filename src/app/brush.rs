@@ -5,11 +5,15 @@ use std::sync::Arc;
 use glam::{DVec2, Vec3};
 
 use crate::render::uniforms::map_place;
-use crate::scene::{CloudLayer, MAX_DABS, MAX_LAYERS, MapEdge, MapLayer, MapSource, Scene, Stroke};
+use crate::scene::{CloudLayer, FlowKind, MAX_DABS, MAX_LAYERS, MapEdge, MapLayer, MapSource, Scene, Stroke};
 use crate::ui::PaintState;
 
 /// Dabs lie so many radii apart.
 const SPACING: f64 = 0.25;
+/// Speeds of flows at no and at full strength, in metres per second.
+const SPEEDS: [f32; 2] = [2.0, 40.0];
+/// Times after which a flow that was drawn begins anew, in seconds.
+const TURNS: [f32; 2] = [600.0, 3600.0];
 
 /// Why nothing was painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -35,14 +39,23 @@ pub(super) struct UnderWay {
     pub(super) height_m: f32,
     layer: usize,
     map: usize,
-    /// How many strokes there are with it: with another number it was taken back.
-    count: usize,
-    /// The last dab, not wrapped into the map.
+    does: Does,
+    /// The last dab, or where a flow begins, not wrapped into the map.
     last: Option<DVec2>,
 }
 
+/// What is being made.
+#[derive(Clone, Copy, Debug)]
+enum Does {
+    /// A stroke, the last of so many: with another number it was taken back.
+    Stroke { count: usize },
+    /// A flow of the map.
+    Flow { scale_m: f32 },
+}
+
 impl UnderWay {
-    /// Begins a stroke at a height in a scene, which gets a painted layer on top of its map if it has none there.
+    /// Begins a stroke or a flow at a height in a scene. A stroke gets a painted layer on top of the map if there is none, a flow
+    /// always one of its own.
     #[allow(clippy::cast_possible_truncation, reason = "a constant below 1")]
     pub(super) fn begin(scene: &mut Scene, height_m: Option<f32>, brush: &PaintState) -> Result<Self, BrushError> {
         let layers: Vec<_> = scene.numbered_layers().filter(|(_, layer)| layer.reads_map()).collect();
@@ -53,6 +66,15 @@ impl UnderWay {
         let (layer, base_m, top_m) = (found.0, found.1.base_m, found.1.top_m);
         let scale_m = scene.weather.size_m * found.1.map_scale;
         let maps = &mut scene.weather.layers;
+        let height = height_m.unwrap_or(base_m).clamp(base_m, top_m);
+        if brush.stirs {
+            if maps.len() >= MAX_LAYERS {
+                return Err(BrushError::Full);
+            }
+            maps.push(flow(brush, scale_m));
+            let map = maps.len() - 1;
+            return Ok(Self { height_m: height, layer, map, does: Does::Flow { scale_m }, last: None });
+        }
         if maps.last().is_none_or(|map| map.source != MapSource::Painted) {
             if maps.len() >= MAX_LAYERS {
                 return Err(BrushError::Full);
@@ -72,17 +94,19 @@ impl UnderWay {
             dabs: Vec::new(),
         };
         maps[map].strokes.0.push(Arc::new(stroke));
-        let height_m = height_m.unwrap_or(base_m).clamp(base_m, top_m);
-        Ok(Self { height_m, layer, map, count, last: None })
+        Ok(Self { height_m: height, layer, map, does: Does::Stroke { count }, last: None })
     }
 
-    /// The layer of the map that it is on.
-    pub(super) fn map(&self) -> usize {
-        self.map
+    /// The parameter that it edits.
+    pub(super) fn key(&self) -> String {
+        let parameter = match self.does {
+            Does::Stroke { .. } => "strokes",
+            Does::Flow { .. } => "flow_begun_secs",
+        };
+        format!("weather.layers.{}.{parameter}", self.map)
     }
 
-    /// Draws the stroke on to where a direction from the eye meets its height; dabs lie evenly on the way.
-    #[allow(clippy::cast_possible_truncation, reason = "places on the map, within it")]
+    /// Draws it on to where a direction from the eye meets its height.
     pub(super) fn touch(&mut self, scene: &mut Scene, towards: Vec3, time_secs: f64) -> Result<(), BrushError> {
         let Some(there) = scene.place_at_height(towards, self.height_m) else { return Ok(()) };
         let camera = &scene.camera;
@@ -91,8 +115,22 @@ impl UnderWay {
         let Some(layer) = scene.layers.get(self.layer) else { return Ok(()) };
         let place = map_place(scene, layer, [east, f64::from(self.height_m), south], time_secs);
         let is_endless = scene.weather.edge == MapEdge::Repeat;
-        let map = scene.weather.layers.get_mut(self.map);
-        let Some(map) = map.filter(|map| map.strokes.0.len() == self.count) else { return Ok(()) };
+        let Some(map) = scene.weather.layers.get_mut(self.map) else { return Ok(()) };
+        match self.does {
+            Does::Stroke { count } if map.strokes.0.len() == count => self.dabs(map, place, is_endless),
+            Does::Flow { scale_m } if map.source == MapSource::Flow => {
+                let begin = *self.last.get_or_insert(place);
+                drawn(map, [begin, place], scale_m);
+                Ok(())
+            }
+            // It was taken back.
+            Does::Stroke { .. } | Does::Flow { .. } => Ok(()),
+        }
+    }
+
+    /// Dabs from the last one to a place; they lie evenly on the way.
+    #[allow(clippy::cast_possible_truncation, reason = "places on the map, within it")]
+    fn dabs(&mut self, map: &mut MapLayer, place: DVec2, is_endless: bool) -> Result<(), BrushError> {
         let room = MAX_DABS.saturating_sub(map.strokes.dabs());
         if room == 0 {
             return Err(BrushError::Worn);
@@ -129,10 +167,66 @@ impl UnderWay {
     }
 }
 
+/// A flow that is about to be drawn.
+fn flow(brush: &PaintState, scale_m: f32) -> MapLayer {
+    let [slow, fast] = SPEEDS;
+    MapLayer {
+        source: MapSource::Flow,
+        flow: brush.flow,
+        flow_radius: (brush.radius_m / scale_m).clamp(0.01, 0.5),
+        flow_mps: slow + (fast - slow) * brush.strength.clamp(0.0, 1.0),
+        ..MapLayer::default()
+    }
+}
+
+/// A flow from one place on the map to another: it has carried the fastest of its cloud from there to here.
+#[allow(clippy::cast_possible_truncation, reason = "places on the map, to single precision")]
+fn drawn(map: &mut MapLayer, [begin, end]: [DVec2; 2], scale_m: f32) {
+    let on_map = begin - begin.floor();
+    (map.flow_east, map.flow_south) = (on_map.x as f32, on_map.y as f32);
+    let way = end - begin;
+    let length_m = way.length() as f32 * scale_m;
+    if length_m <= 0.0 {
+        return;
+    }
+    map.flow_heading_deg = (way.x.atan2(-way.y).to_degrees().rem_euclid(360.0) as f32).min(360.0);
+    // To the right, vortices turn clockwise.
+    let turns_back = map.flow == FlowKind::Vortex && way.x < 0.0;
+    map.flow_mps = if turns_back { -map.flow_mps.abs() } else { map.flow_mps.abs() };
+    map.flow_begun_secs = (length_m / map.flow_mps.abs().max(0.1)).min(100_000.0);
+    map.flow_secs = map.flow_begun_secs.clamp(TURNS[0], TURNS[1]);
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scene::{Brush, DensityModel};
+
+    #[test]
+    fn a_flow_carries_cloud_from_where_it_begins_to_where_it_ends() {
+        let stirred = |flow: FlowKind, to_the: f32| {
+            let mut scene = Scene::default();
+            let brush = PaintState { stirs: true, flow, radius_m: 2400.0, strength: 0.5, ..PaintState::default() };
+            let mut stroke = UnderWay::begin(&mut scene, Some(1500.0), &brush).expect("the sky has a map");
+            assert_eq!(stroke.key(), "weather.layers.1.flow_begun_secs");
+            for side in [0.0, 0.1 * to_the, 0.3 * to_the] {
+                stroke.touch(&mut scene, Vec3::new(side, 0.5, -1.0).normalize(), 0.0).expect("there is room");
+            }
+            assert!(scene.problems().is_empty(), "{:?}", scene.problems());
+            (scene.weather.layers.pop().expect("a flow"), scene.weather.size_m)
+        };
+        let (band, size_m) = stirred(FlowKind::Band, 1.0);
+        assert_eq!((band.source, band.flow), (MapSource::Flow, FlowKind::Band));
+        assert!((band.flow_heading_deg - 90.0).abs() < 0.5, "towards {}", band.flow_heading_deg);
+        assert!((band.flow_radius * size_m - 2400.0).abs() < 1.0);
+        // The height above the eye is twice the way ahead; the way aside is 0.3 of that.
+        let carried_m = band.flow_mps * band.flow_begun_secs;
+        let eye_m = Scene::default().camera.height_m;
+        assert!((carried_m - 0.6 * (1500.0 - eye_m)).abs() < 5.0, "{carried_m} m");
+        let (clockwise, _) = stirred(FlowKind::Vortex, 1.0);
+        let (back, _) = stirred(FlowKind::Vortex, -1.0);
+        assert!(clockwise.flow_mps > 0.0 && back.flow_mps == -clockwise.flow_mps);
+    }
 
     fn painted(touches: &[Vec3]) -> Scene {
         let mut scene = Scene::default();

@@ -416,7 +416,10 @@ impl Session {
         }
         let mut scene = self.document.preset().scene.clone();
         let layer = scene.weather.layers.first_mut()?;
-        layer.source = MapSource::Image;
+        // One that grows goes on growing, out of another image.
+        if layer.source != MapSource::Grown {
+            layer.source = MapSource::Image;
+        }
         layer.image.0 = path.display().to_string();
         self.document.apply(&Action::EditScene { key: "weather.layers.0.image".to_owned(), scene: Box::new(scene) });
         self.ui.toasts.info(format!("{} holds no sky and became the weather map (Ctrl+Z undoes it)", path.display()));

@@ -138,7 +138,8 @@ impl MarchVariant {
         }
         let any = |test: fn(&CloudLayer) -> bool| layers.iter().any(|layer| test(layer));
         let Models { profile, thesis, uniform, texture, product, automaton, shapes, grid } = Models::of(&layers, why);
-        let has_heights = scene.weather.layers.iter().any(|map| map.source != MapSource::Generated);
+        let has_heights =
+            scene.weather.layers.iter().any(|map| !matches!(map.source, MapSource::Generated | MapSource::Flow));
         let baked = baked(frame, why);
         let reads_map = any(CloudLayer::reads_map) || profile || thesis || uniform || texture || product || automaton;
         let of_map = if texture && !has_heights {

@@ -33,13 +33,14 @@ pub(super) struct Example {
 
 impl Example {
     pub(super) fn new(gpu: &crate::gpu::Gpu, name: &str, image: &MapImage) -> Result<Self, GpuError> {
-        let size = [image.width, image.height];
-        let (normal, back) = normal_values(&image.rgba, image.width as usize);
-        #[allow(clippy::cast_possible_truncation, reason = "a small table")]
-        let table = [TABLE as u32, 1];
+        // No finer than the map that it grows.
+        let (pixels, width) = reduced(&image.rgba, image.width as usize, SIDE as usize);
+        let (normal, back) = normal_values(&pixels, width);
+        #[allow(clippy::cast_possible_truncation, reason = "small sizes")]
+        let (table, size) = ([TABLE as u32, 1], [width as u32; 2]);
         Ok(Self {
             name: name.to_owned(),
-            image: uploaded(gpu, ("weather_image", size), &image.rgba)?,
+            image: uploaded(gpu, ("weather_image", size), &pixels)?,
             normal: uploaded(gpu, ("weather_normal", size), &normal)?,
             back: uploaded(gpu, ("weather_back", table), &back)?,
         })
@@ -95,16 +96,24 @@ fn uniforms(layer: &MapLayer, state: i64) -> GrowUniforms {
     }
 }
 
-/// Values of each channel by their rank as those of a normal distribution, and the table that takes them back.
+/// Values of each channel by their rank as those of a normal distribution (the Gaussian histogram transformation), and the look-up
+/// table of its inverse.
 fn normal_values(rgba: &[[f32; 4]], width: usize) -> (Vec<[f32; 4]>, Vec<[f32; 4]>) {
     let mut normal = vec![[0.5; 4]; rgba.len()];
     let mut back = vec![[0.0; 4]; TABLE];
+    let shares: Vec<f64> = (0..TABLE)
+        .map(|index| (probability((index as f64 / (TABLE - 1) as f64 - MEAN) / SIGMA) - TAIL) / (1.0 - 2.0 * TAIL))
+        .collect();
     for channel in 0..4 {
         let values: Vec<f32> = rgba.iter().map(|pixel| pixel[channel].clamp(0.0, 1.0)).collect();
         // Where much of the image has one value, as clear air has, places nearer to others rank nearer to them.
         let near = blurred(&values, width);
+        // Those that are alike even there, in any order but that of rows.
+        let lot = |at: usize| at.wrapping_mul(0x9e37_79b9) & 0xffff_ffff;
         let mut order: Vec<usize> = (0..values.len()).collect();
-        order.sort_by(|a, b| values[*a].total_cmp(&values[*b]).then(near[*a].total_cmp(&near[*b])));
+        order.sort_by(|a, b| {
+            values[*a].total_cmp(&values[*b]).then(near[*a].total_cmp(&near[*b])).then(lot(*a).cmp(&lot(*b)))
+        });
         let count = values.len() as f64;
         for (rank, at) in order.iter().enumerate() {
             #[allow(clippy::cast_possible_truncation, reason = "a texel")]
@@ -112,15 +121,30 @@ fn normal_values(rgba: &[[f32; 4]], width: usize) -> (Vec<[f32; 4]>, Vec<[f32; 4
                 .clamp(0.0, 1.0) as f32;
             normal[*at][channel] = value;
         }
-        for (index, entry) in back.iter_mut().enumerate() {
-            let below = probability((index as f64 / (TABLE - 1) as f64 - MEAN) / SIGMA);
-            let share = (below - TAIL) / (1.0 - 2.0 * TAIL);
+        for (entry, share) in back.iter_mut().zip(&shares) {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
             let rank = ((share * count) as usize).min(values.len() - 1);
             entry[channel] = values[order[rank]];
         }
     }
     (normal, back)
+}
+
+/// A square image of at most so many pixels a side: each the mean of a square of the image's.
+fn reduced(rgba: &[[f32; 4]], width: usize, most: usize) -> (Vec<[f32; 4]>, usize) {
+    let square = width.div_ceil(most);
+    if square <= 1 {
+        return (rgba.to_vec(), width);
+    }
+    let side = width / square;
+    let mean = |index: usize| {
+        let (x, y) = (index % side * square, index / side * square);
+        let pixels = (0..square * square).map(|k| rgba[(y + k / square) * width + x + k % square]);
+        pixels
+            .fold([0.0; 4], |sum, pixel| std::array::from_fn(|channel| sum[channel] + pixel[channel]))
+            .map(|sum: f32| sum / (square * square) as f32)
+    };
+    ((0..side * side).map(mean).collect(), side)
 }
 
 /// Means over a sixteenth of the image about each of its pixels; the image goes on at its ends as at its border.

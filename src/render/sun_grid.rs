@@ -12,7 +12,7 @@ use super::uniforms::scene::{BandUniforms, SceneUniforms};
 use super::uniforms::{Eye, field_uniforms, scene_uniforms, shapes_uniforms, wind_mps};
 use crate::gpu::{GpuError, Job, ProgramKey, Texture};
 use crate::plan::{FramePlan, Lighting, MarchVariant, SunGridPlan};
-use crate::scene::{Automaton, Frame, Weather};
+use crate::scene::{Automaton, Frame, MapSource, Scene, Weather};
 
 /// Size of the region about the middle in which cells are of nearly the same size, and of all of the grid.
 const CORE_M: f32 = 5000.0;
@@ -92,7 +92,9 @@ impl SunGrid {
         if let Some(made) = &self.made {
             let scales = frame.scene.visible_layers().map(|layer| f64::from(layer.wind_scale.abs()));
             let elapsed = (frame.time_secs - made.time_secs).abs();
-            let behind = wind_mps(&frame.scene.wind).length() * scales.fold(0.0, f64::max) * elapsed;
+            let speed_mps =
+                wind_mps(&frame.scene.wind).length() * scales.fold(0.0, f64::max) + fastest_flow(frame.scene);
+            let behind = speed_mps * elapsed;
             let is_near = plan.temporal.is_some()
                 && elapsed <= STALE_SECS
                 && behind <= STALE_CELLS * f64::from(finest_m(nodes))
@@ -189,6 +191,13 @@ fn sweep(
         jobs.push(context.whole("sun_sweep", &from.program, &bound, Extent::image(plane))?.with_rows(1));
     }
     Ok(depths)
+}
+
+/// How fast flows of the map may carry clouds, in m/s.
+fn fastest_flow(scene: &Scene) -> f64 {
+    let flows = scene.weather.layers.iter().filter(|map| map.source == MapSource::Flow);
+    let scales = scene.visible_layers().map(|layer| f64::from(layer.map_scale));
+    flows.map(|map| f64::from(map.flow_mps.abs())).sum::<f64>() * scales.fold(0.0, f64::max)
 }
 
 /// An eye over the middle.

@@ -195,7 +195,9 @@ impl WeatherMap {
         }
         let linear_repeat = repeat_sampler(context.gpu);
         self.paintings.retain(|index, _| matches!(wanted.get(*index), Some(LayerKey::Painted(..))));
-        for (index, layer) in wanted.iter().enumerate() {
+        // What lies below the first that has changed is as it was.
+        let same = wanted.iter().zip(&self.made_from).take_while(|(wanted, made)| wanted == made).count();
+        for (index, layer) in wanted.iter().enumerate().skip(same) {
             let ([before, after], share, (mode, opacity)) = match layer {
                 LayerKey::Between(states, share, joining) => (states, share, joining),
                 LayerKey::Painted(strokes, opacity, repeats) => {
@@ -262,8 +264,14 @@ impl WeatherMap {
         uniforms: &FlowUniforms,
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
-        let nothing = Texture::new_2d(context.gpu, "weather_map", [1; 2], FORMAT)?;
-        let below = index.checked_sub(1).map_or(&nothing, |below| &self.joined[below]);
+        let nothing;
+        let below = match index.checked_sub(1) {
+            Some(below) => &self.joined[below],
+            None => {
+                nothing = Texture::new_2d(context.gpu, "weather_map", [1; 2], FORMAT)?;
+                &nothing
+            }
+        };
         let buffer = context.gpu.uniform("flow", bytemuck::bytes_of(uniforms));
         let bound = vec![
             ("flow", buffer.as_entire_binding()),

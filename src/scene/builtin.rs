@@ -46,6 +46,7 @@ pub const BUILTINS: &[Builtin] = builtins![
     "stormy",
     "moonlit",
     "above_clouds",
+    "island_eddies",
     "cirrus",
     "cirrocumulus",
     "cirrostratus",

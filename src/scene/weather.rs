@@ -119,12 +119,14 @@ params! {
         flow_south: f32 = 0.5, 0.0..=1.0, None;
         /// Radius of a vortex, half the width of a band, in edges of the map.
         flow_radius: f32 = 0.3, 0.01..=0.5, None;
-        /// Greatest speed of a flow.
+        /// Greatest speed of a flow, for cloud layers whose map is as large as it is.
         flow_mps: f32 = 10.0, -100.0..=100.0, MetresPerSecond;
         /// Where a flow goes, clockwise from north; bands and shear keep to eighths of a turn, so that they repeat with the map.
         flow_heading_deg: f32 = 90.0, 0.0..=360.0, Degrees;
         /// Time after which a flow begins anew, in turns with another, so that nothing is wound up for ever.
         flow_secs: f32 = 1800.0, 10.0..=100_000.0, Seconds, logarithmic;
+        /// How long a flow has gone on where it counts most: how far it has wound up the map. Uniform ones leave it out.
+        flow_begun_secs: f32 = 0.0, 0.0..=100_000.0, Seconds;
     }
 }
 

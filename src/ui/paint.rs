@@ -4,7 +4,7 @@ use egui::{Align2, Color32, Context, Pos2, Rect, Response, Stroke, Ui};
 
 use super::row;
 use crate::scene::param::Choice;
-use crate::scene::{Brush, CloudKind, Scene};
+use crate::scene::{Brush, CloudKind, FlowKind, Scene};
 
 /// The brush touched the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,13 +20,17 @@ pub struct Touch {
 pub struct PaintState {
     /// Whether the left mouse button paints.
     pub is_on: bool,
-    /// What it does.
+    /// Whether it stirs the map instead of painting.
+    pub stirs: bool,
+    /// How it stirs.
+    pub flow: FlowKind,
+    /// What it paints.
     pub brush: Brush,
     /// The kind of cloud that it adds.
     pub kind: CloudKind,
     /// Its radius.
     pub radius_m: f32,
-    /// How far one pass of it goes.
+    /// How far one pass of it goes; how fast what it stirs flows.
     pub strength: f32,
     /// Share of the radius over which it fades.
     pub softness: f32,
@@ -44,6 +48,8 @@ impl Default for PaintState {
     fn default() -> Self {
         Self {
             is_on: false,
+            stirs: false,
+            flow: FlowKind::Vortex,
             brush: Brush::Add,
             kind: CloudKind::Cumulus,
             radius_m: 900.0,
@@ -134,15 +140,27 @@ pub(super) fn show(context: &Context, area: Rect, state: &mut PaintState) {
                 ui.strong("Brush");
                 ui.weak("left mouse paints, P ends it");
             });
-            pick(ui, "brush.does", &mut state.brush);
-            if state.brush == Brush::Add {
+            let stirs = ui.checkbox(&mut state.stirs, "Stir").on_hover_text(
+                "Draws flows that carry the clouds: from where the button is pressed to where it is let go, and on from there.",
+            );
+            row::name(ui, &stirs, "Stir", "brush.stirs");
+            let paints = !state.stirs;
+            if paints {
+                pick(ui, "brush.does", &mut state.brush);
+            } else {
+                pick(ui, "brush.flow", &mut state.flow);
+            }
+            let adds = paints && state.brush == Brush::Add;
+            if adds {
                 pick(ui, "brush.kind", &mut state.kind);
             }
             let radius = egui::Slider::new(&mut state.radius_m, 50.0..=20_000.0).logarithmic(true).suffix(" m");
             slider(ui, radius, "Radius", "brush.radius");
             slider(ui, egui::Slider::new(&mut state.strength, 0.01..=1.0), "Strength", "brush.strength");
-            slider(ui, egui::Slider::new(&mut state.softness, 0.0..=1.0), "Softness", "brush.softness");
-            if state.brush == Brush::Add {
+            if paints {
+                slider(ui, egui::Slider::new(&mut state.softness, 0.0..=1.0), "Softness", "brush.softness");
+            }
+            if adds {
                 slider(ui, egui::Slider::new(&mut state.amount, 0.0..=1.0), "Amount", "brush.amount");
             }
         });

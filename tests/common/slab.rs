@@ -9,6 +9,7 @@ use nephoscope::render::uniforms::scene::{LayerUniforms, SceneUniforms, ViewUnif
 use super::field::{Field, linear_repeat, plain, run, scalars, view_of};
 use super::gpu;
 
+pub(crate) const SHELL: u32 = 0;
 pub(crate) const FLAT: u32 = 1;
 pub(crate) const BOX: u32 = 2;
 pub(crate) const PROFILE: u32 = 0;

@@ -9,21 +9,22 @@ use nephoscope::scene::{Output, Quality};
 
 use crate::common::field::{Bound, Field, evaluated, linear_repeat, run, view_of};
 use crate::common::sky::{frame, renderer};
-use crate::common::slab::{FLAT, March, PRODUCT, PROFILE, THESIS, noisy_layer, of_octaves};
+use crate::common::slab::{FLAT, March, PRODUCT, PROFILE, SHELL, THESIS, noisy_layer, of_octaves};
 use crate::common::{Case, Random, bits3, gpu};
 
 /// As many cells as the renderer has.
 const CELLS: [u32; 3] = [128, 16, 128];
 
-fn key(file: &'static str, layers: usize) -> ProgramKey {
+fn key(file: &'static str, (domain, layers): (u32, usize)) -> ProgramKey {
     ProgramKey::plain(file)
         .with_flags(["BILLOWS", "PROFILE", "THESIS", "PRODUCT", "DETAIL", "CURL"])
-        .with_constant("DOMAIN", FLAT)
+        .with_constant("DOMAIN", domain)
         .with_constant("LAYERS", u32::try_from(layers).expect("few layers"))
 }
 
 /// The ways over the baked map, made by the production passes.
 fn ways(scene: &wgpu::Buffer, layers: usize) -> Texture {
+    let layers = (FLAT, layers);
     let [there, back] = [(); 2].map(|()| Texture::new_3d(gpu(), "ways", CELLS, (1, wgpu::TextureFormat::Rgba16Float)));
     let map = &Field::baked().map;
     let scene = || ("scene", scene.as_entire_binding());
@@ -37,7 +38,7 @@ fn ways(scene: &wgpu::Buffer, layers: usize) -> Texture {
 }
 
 /// Results of `test/eval_clear.wgsl`.
-fn evaluate(march: &March, layers: usize, cases: &[Case]) -> Vec<[f32; 4]> {
+fn evaluate(march: &March, (domain, layers): (u32, usize), cases: &[Case]) -> Vec<[f32; 4]> {
     let scene = gpu().uniform("scene", bytemuck::bytes_of(&march.scene));
     let ways = ways(&scene, layers);
     let mut read: Bound<'_> = vec![
@@ -47,46 +48,70 @@ fn evaluate(march: &March, layers: usize, cases: &[Case]) -> Vec<[f32; 4]> {
         ("linear_repeat", wgpu::BindingResource::Sampler(linear_repeat())),
     ];
     read.extend(Field::baked().noises());
-    evaluated(&key("test/eval_clear.wgsl", layers).with_flags(["SKIP"]), &read, cases)
+    evaluated(&key("test/eval_clear.wgsl", (domain, layers)).with_flags(["SKIP"]), &read, cases)
 }
+
+/// A place at an altitude, so far to the east and to the south.
+fn place(domain: u32, radius_m: f32, [east, altitude, south]: [f32; 3]) -> Vec3 {
+    if domain == FLAT {
+        return Vec3::new(east, altitude, south);
+    }
+    let [radius, x, h, z] = [radius_m, east, altitude, south].map(f64::from);
+    let y = ((radius + h).powi(2) - x * x - z * z).max(0.0).sqrt() - radius;
+    #[allow(clippy::cast_possible_truncation, reason = "a place, to single precision")]
+    let y = y as f32;
+    Vec3::new(east, y, south)
+}
+
+/// Over a flat world, over a small planet, and over the earth as far out as clouds are drawn.
+const WORLDS: [(u32, f32, f32); 3] = [(FLAT, 6.36e6, 2e4), (SHELL, 1e5, 3e4), (SHELL, 6.36e6, 2.4e5)];
 
 #[test]
 fn no_cloud_stands_where_the_map_promises_clear_air() {
     let mut random = Random::new(41);
-    for models in [&[PROFILE][..], &[THESIS], &[PROFILE, THESIS], &[PRODUCT, PROFILE]] {
-        // How far the layers lean, and how many ways have to end near cloud at least: a strong shear shortens them.
-        for (coverage, anvil, lean, near) in [(0.25, 0.0, 500.0, 20), (0.5, 0.7, 4000.0, 5), (0.75, 0.2, 500.0, 20)] {
-            let mut march = March::slab(3000.0, 0.04, Vec3::Y);
-            for (index, (slot, model)) in march.scene.layers.iter_mut().zip(models).enumerate() {
-                // The second layer stands higher and its map is another.
-                let base_m = 600.0 + 500.0 * index as f32;
-                *slot = noisy_layer(*model, base_m, base_m + 2200.0, coverage);
-                slot.lean = Vec4::new(lean, -0.4 * lean, slot.lean.z, 0.0);
-                slot.map_from_world += Vec4::new(0.3, 0.1, 0.0, 0.0) * index as f32;
-                slot.anvil = anvil;
-                if *model == PRODUCT {
-                    *slot = of_octaves(*slot);
-                } else if models[0] == PRODUCT {
-                    // Fibres of a form of their own.
-                    slot.form = Vec4::new(0.0, 0.0, 1.0, 1.0);
-                    slot.combing = Vec4::new(0.6, -0.8, 1.0 - 1.0 / 7.0, 0.0);
+    for (domain, radius_m, span_m) in WORLDS {
+        for models in [&[PROFILE][..], &[THESIS], &[PROFILE, THESIS], &[PRODUCT, PROFILE]] {
+            // How far the layers lean, and how many ways have to end near cloud at least: a strong shear shortens them.
+            for (coverage, anvil, lean, near) in [(0.25, 0.0, 500.0, 20), (0.5, 0.7, 4000.0, 5), (0.75, 0.2, 500.0, 20)]
+            {
+                let mut march = March::slab(3000.0, 0.04, Vec3::Y);
+                march.scene.planet_radius_m = radius_m;
+                for (index, (slot, model)) in march.scene.layers.iter_mut().zip(models).enumerate() {
+                    // The second layer stands higher and its map is another.
+                    let base_m = 600.0 + 500.0 * index as f32;
+                    *slot = noisy_layer(*model, base_m, base_m + 2200.0, coverage);
+                    slot.lean = Vec4::new(lean, -0.4 * lean, slot.lean.z, 0.0);
+                    slot.map_from_world += Vec4::new(0.3, 0.1, 0.0, 0.0) * index as f32;
+                    slot.anvil = anvil;
+                    if *model == PRODUCT {
+                        *slot = of_octaves(*slot);
+                    } else if models[0] == PRODUCT {
+                        // Fibres of a form of their own.
+                        slot.form = Vec4::new(0.0, 0.0, 1.0, 1.0);
+                        slot.combing = Vec4::new(0.6, -0.8, 1.0 - 1.0 / 7.0, 0.0);
+                    }
                 }
+                let mut cases: Vec<Case> = Vec::new();
+                for _ in 0..100_000 {
+                    let at = [(-span_m, span_m), (300.0, 3600.0), (-span_m, span_m)];
+                    let p = place(domain, radius_m, at.map(|(low, high)| random.between(low, high)));
+                    let offset = random.direction() * random.between(0.0, 0.999);
+                    cases.push([bits3(p), bits3(offset), [0; 4], [0; 4]]);
+                }
+                let (mut promised, mut beyond) = (0, 0);
+                let found = evaluate(&march, (domain, models.len()), &cases);
+                for ([way, there, farther, here], case) in found.into_iter().zip(&cases) {
+                    assert!((0.0..1e5).contains(&way), "models {models:?}: a way of {way} m");
+                    assert!(there <= 0.0 || here > 0.0, "{models:?}, {coverage}: cloud within {way} m of {case:?}");
+                    promised += u32::from(way > 100.0);
+                    beyond += u32::from(way > 100.0 && farther > 0.0);
+                }
+                assert!(promised > 10_000, "models {models:?}, {coverage}: only {promised} places have a way");
+                assert!(
+                    beyond > near,
+                    "models {models:?}, {coverage}: cloud is far from every way ({beyond} are near)"
+                );
             }
-            let mut cases: Vec<Case> = Vec::new();
-            for _ in 0..100_000 {
-                let p = Vec3::new(random.between(-2e4, 2e4), random.between(300.0, 3600.0), random.between(-2e4, 2e4));
-                let offset = random.direction() * random.between(0.0, 0.999);
-                cases.push([bits3(p), bits3(offset), [0; 4], [0; 4]]);
-            }
-            let (mut promised, mut beyond) = (0, 0);
-            for ([way, there, farther, here], case) in evaluate(&march, models.len(), &cases).into_iter().zip(&cases) {
-                assert!((0.0..1e5).contains(&way), "models {models:?}: a way of {way} m");
-                assert!(there <= 0.0 || here > 0.0, "models {models:?}, {coverage}: cloud within {way} m of {case:?}");
-                promised += u32::from(way > 100.0);
-                beyond += u32::from(way > 100.0 && farther > 0.0);
-            }
-            assert!(promised > 10_000, "models {models:?}, {coverage}: only {promised} places have a way");
-            assert!(beyond > near, "models {models:?}, {coverage}: cloud is far from every way ({beyond} are near)");
         }
     }
 }

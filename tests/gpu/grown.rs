@@ -136,6 +136,12 @@ fn a_map_that_grows_is_the_same_however_its_time_is_reached_and_never_jumps() {
     };
     let steps: Vec<f64> = forwards.windows(2).map(|pair| change(&pair[0], &pair[1])).collect();
     let whole = change(&forwards[0], &forwards[11]);
+    // Every patch ends and begins in a time like this: a quarter of a state at once.
+    let fine: Vec<_> = (0..24).map(|k| map(&mut renderer, &scene, 200.0 + f64::from(k) * 2.5)).collect();
+    let fine: Vec<f64> = fine.windows(2).map(|pair| change(&pair[0], &pair[1])).collect();
+    let (least, largest) =
+        fine.iter().fold((f64::MAX, 0.0f64), |(least, most), step| (least.min(*step), most.max(*step)));
+    assert!(largest < 2.5 * least, "steps of {least} to {largest}");
     let most = steps.iter().copied().fold(0.0, f64::max);
     println!("a tenth of the time changes texels by at most {most:.4} in the mean, all of it by {whole:.4}");
     assert!(most < 0.35 * whole, "{steps:?}");

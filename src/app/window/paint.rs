@@ -18,7 +18,7 @@ impl App {
         }
         let document = &mut self.session.document;
         let mut scene = document.preset().scene.clone();
-        let (mut done, mut map) = (0, None);
+        let (mut done, mut key) = (0, None);
         let mut result = Ok(());
         for touch in &state.touches {
             if !touch.begins && self.session.stroke.is_none() {
@@ -53,7 +53,7 @@ impl App {
                 break;
             };
             result = stroke.touch(&mut scene, towards, document.time_secs());
-            map = Some(stroke.map());
+            key = Some(stroke.key());
             state.height_m = Some(stroke.height_m);
             done += 1;
             if result.is_err() {
@@ -65,8 +65,7 @@ impl App {
             (done, self.session.stroke) = (state.touches.len(), None);
         }
         state.touches.drain(..done);
-        if let Some(map) = map {
-            let key = format!("weather.layers.{map}.strokes");
+        if let Some(key) = key {
             document.apply(&Action::EditScene { key, scene: Box::new(scene) });
         }
         if done > 0 {

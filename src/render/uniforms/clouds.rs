@@ -351,6 +351,15 @@ pub(crate) fn field_uniforms(frame: &Frame<'_>) -> SceneUniforms {
     scene_uniforms(&field, &dark, &Eye::new(&origin))
 }
 
+/// As shaders number what lies beyond the edge of the map.
+pub(crate) fn edge_index(edge: MapEdge) -> u32 {
+    match edge {
+        MapEdge::Repeat => 0,
+        MapEdge::Clamp => 1,
+        MapEdge::Clear => 2,
+    }
+}
+
 /// Everything the cloud shaders are told.
 pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) -> SceneUniforms {
     let (scene, quality) = (frame.scene, frame.quality);
@@ -386,11 +395,7 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         box_min: corner(-1.0, lowest_m),
         ambient_occlusion: light.ambient_occlusion,
         box_max: corner(1.0, highest_m),
-        map_edge: match scene.weather.edge {
-            MapEdge::Repeat => 0,
-            MapEdge::Clamp => 1,
-            MapEdge::Clear => 2,
-        },
+        map_edge: edge_index(scene.weather.edge),
         front: front(scene, eye, frame.time_secs),
         automaton_shares: automaton_shares(&visible, frame.time_secs),
         sun_grid_place: Vec4::ZERO,

@@ -16,7 +16,7 @@ mod shapes;
 pub(super) use camera::{Eye, camera_uniforms};
 pub use clouds::map_place;
 pub(crate) use clouds::{density_rounds, wind_mps};
-pub(super) use clouds::{field_uniforms, plain_sky, scene_uniforms};
+pub(super) use clouds::{edge_index, field_uniforms, plain_sky, scene_uniforms};
 pub(super) use ground::ground_uniforms;
 pub use living::automaton_uniforms;
 pub(super) use shapes::shapes_uniforms;

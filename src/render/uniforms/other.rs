@@ -213,8 +213,8 @@ gpu_struct! {
         pub radius: f32,
         /// Which kind.
         pub kind: u32,
-        /// Whether the map repeats.
-        pub repeats: u32,
+        /// What lies beyond the edge of the map.
+        pub edge: u32,
     }
 
     /// A map that grows out of an image.
