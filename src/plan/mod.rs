@@ -21,7 +21,7 @@ pub use variant::{MarchVariant, Phases, SunGridPlan};
 use std::ops::Range;
 
 use crate::choices;
-use crate::scene::{Frame, Output, Quality, ToneMap, UpdateFraction};
+use crate::scene::{Frame, MapSource, Output, Quality, Scene, ToneMap, UpdateFraction};
 use decide::Verdicts;
 
 choices! {
@@ -69,6 +69,25 @@ pub struct SkyPlan {
     pub stars: bool,
 }
 
+/// What kinds of layers the weather map has beside generated ones and images.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MapLayers {
+    /// Several, which are joined.
+    pub joined: bool,
+    /// Some that grow out of an image.
+    pub grown: bool,
+    /// Some that flow.
+    pub flow: bool,
+}
+
+impl MapLayers {
+    fn of(scene: &Scene) -> Self {
+        let maps = &scene.weather.layers;
+        let any = |source: MapSource| maps.iter().any(|map| map.source == source);
+        Self { joined: maps.len() > 1, grown: any(MapSource::Grown), flow: any(MapSource::Flow) }
+    }
+}
+
 /// Everything one frame does, in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FramePlan {
@@ -100,6 +119,8 @@ pub struct FramePlan {
     pub graded: bool,
     /// Whether what clips on the screen is striped.
     pub stripes: bool,
+    /// Whether the weather map has layers over others, which grow, or which flow.
+    pub map_layers: MapLayers,
     /// Whether clouds are found by tracking, which needs bounds of their density.
     pub tracks: bool,
     /// Samples of each pixel; those of paths are their own.
@@ -155,6 +176,7 @@ impl FramePlan {
             tone_map: scene.display.tone_map,
             graded,
             stripes: forced.stripes && frame.output == Output::Display,
+            map_layers: MapLayers::of(scene),
             tracks: false,
             pixel_samples: 1,
             verdicts: why.complete(),

@@ -3,6 +3,7 @@
 use super::blue_noise;
 use super::context::{Bound, Context, Extent};
 use super::uniforms::other::ReliefUniforms;
+use super::{flow, grown, weather};
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
 use crate::plan::{FramePlan, MarchVariant};
 
@@ -171,7 +172,11 @@ pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
             plan.tracks && plan.has_clouds() && wants(|march| !march.mapless && march.baked.is_none()),
         ),
     ];
-    all.into_iter().filter(|(_, wanted)| *wanted).map(|(file, _)| ProgramKey::plain(file)).collect()
+    let all = all.into_iter().filter(|(_, wanted)| *wanted).map(|(file, _)| ProgramKey::plain(file));
+    let maps = plan.map_layers;
+    let of_map = [(maps.joined, weather::joining_key()), (maps.grown, grown::key()), (maps.flow, flow::key())];
+    let of_map = of_map.into_iter().filter(|(wanted, _)| *wanted && wants(|march| !march.mapless));
+    all.chain(of_map.map(|(_, key)| key)).collect()
 }
 
 /// A 3D noise: its pass, its shader, its size.

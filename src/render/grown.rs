@@ -197,6 +197,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
     fn normal_values_are_normal_and_go_back_to_what_they_were() {
         let width = 64;
         let value = |at: usize| ((at % width) as f32 / 63.0 * ((at / width) as f32 / 63.0) - 0.2).max(0.0);

@@ -30,9 +30,9 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 /// What one layer looks like at a state of its evolution.
 #[derive(Clone, Debug, PartialEq)]
 enum StateKey {
-    Generated { layer: MapLayer, state: i64 },
+    Generated { layer: Box<MapLayer>, state: i64 },
     Image(PathBuf),
-    Grown { layer: MapLayer, state: i64 },
+    Grown { layer: Box<MapLayer>, state: i64 },
 }
 
 /// How a layer joins those below it, and how much of it counts.
@@ -224,7 +224,7 @@ impl WeatherMap {
             ];
             let mut key = ProgramKey::plain("pass/weather_blend.wgsl");
             if index > 0 {
-                key = key.with_flags(["BELOW"]);
+                key = joining_key();
                 bound.push(("map_below", wgpu::BindingResource::TextureView(&self.joined[index - 1].view)));
             }
             jobs.push(context.whole("weather_map", &key, &bound, Extent::image([SIDE; 2]))?);
@@ -322,13 +322,13 @@ fn layer_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<Layer
     match layer.source {
         MapSource::Generated | MapSource::WeatherTexture => {
             let (state, share) = evolution(weather, time_secs);
-            let key = |state| StateKey::Generated { layer: layer.clone(), state };
+            let key = |state| StateKey::Generated { layer: Box::new(layer.clone()), state };
             Ok(LayerKey::Between([key(state), key(state + i64::from(share > 0.0))], share, joining))
         }
         MapSource::Grown => {
             named(layer)?;
             let (state, share) = evolution(weather, time_secs);
-            let key = |state| StateKey::Grown { layer: layer.clone(), state };
+            let key = |state| StateKey::Grown { layer: Box::new(layer.clone()), state };
             Ok(LayerKey::Between([key(state), key(state + i64::from(share > 0.0))], share, joining))
         }
         MapSource::Flow => Ok(LayerKey::Flow(flow::at(layer, weather, time_secs))),
@@ -352,6 +352,11 @@ fn layer_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<Layer
             Ok(LayerKey::Between([at(0), at(usize::from(share > 0.0))], share as f32, joining))
         }
     }
+}
+
+/// The program that joins a layer to those below it.
+pub(super) fn joining_key() -> ProgramKey {
+    ProgramKey::plain("pass/weather_blend.wgsl").with_flags(["BELOW"])
 }
 
 /// As `pass/weather_blend.wgsl` numbers them.

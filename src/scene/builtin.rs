@@ -46,7 +46,6 @@ pub const BUILTINS: &[Builtin] = builtins![
     "stormy",
     "moonlit",
     "above_clouds",
-    "island_eddies",
     "cirrus",
     "cirrocumulus",
     "cirrostratus",
@@ -69,6 +68,7 @@ pub const BUILTINS: &[Builtin] = builtins![
     "sculpted_heaps",
     "towers_in_fog",
     "contrails",
+    "island_eddies",
 ];
 
 /// The built-in preset of that name.

@@ -131,7 +131,8 @@ pub(super) fn show(context: &Context, area: Rect, state: &mut PaintState) {
     if !state.is_on {
         return;
     }
-    let corner = area.left_bottom() + egui::vec2(10.0, -10.0);
+    // Above what the picture says of its progress.
+    let corner = area.left_bottom() + egui::vec2(10.0, -44.0);
     let place = egui::Area::new(egui::Id::unique("brush")).pivot(Align2::LEFT_BOTTOM).fixed_pos(corner);
     place.show(context, |ui| {
         egui::Frame::window(&context.global_style()).inner_margin(8.0).show(ui, |ui| {

@@ -312,6 +312,8 @@ fn light_steps(usual: u32, thickness_m: f32, light_sine: f32) -> u32 {
 /// are in the thickest.
 const USUAL_THICKNESS_M: f32 = 1200.0;
 const LONGEST_IN_THICK: f32 = 2.05;
+/// And how many times as long in the thinnest layer.
+const SHORTEST_IN_THIN_LAYERS: f32 = 0.85;
 /// Extinction down to which they are, and how many times as long they are in the thinnest cloud.
 const USUAL_EXTINCTION_PER_M: f32 = 0.001;
 const LONGEST_IN_THIN: f32 = 1.15;
@@ -320,8 +322,9 @@ const LONGEST_IN_THIN: f32 = 1.15;
 /// from far away, and a step through thin cloud sees little of it. Where all steps are to be equal, they are as told.
 fn step_scale(layer: &CloudLayer, quality: &Quality) -> f32 {
     // A layer is as thick as its shapes need room, however small they are.
-    let thickness_m = if layer.model == DensityModel::Shapes { 0.0 } else { layer.top_m - layer.base_m };
-    let by_thickness = (thickness_m / USUAL_THICKNESS_M).sqrt().clamp(1.0, LONGEST_IN_THICK);
+    let is_of_shapes = layer.model == DensityModel::Shapes;
+    let thickness_m = if is_of_shapes { USUAL_THICKNESS_M } else { layer.top_m - layer.base_m };
+    let by_thickness = (thickness_m / USUAL_THICKNESS_M).sqrt().clamp(SHORTEST_IN_THIN_LAYERS, LONGEST_IN_THICK);
     let by_extinction = (USUAL_EXTINCTION_PER_M / greatest_extinction(layer)).powf(0.25).clamp(1.0, LONGEST_IN_THIN);
     if quality.empty_stride > 1.0 { by_thickness * by_extinction } else { 1.0 }
 }
