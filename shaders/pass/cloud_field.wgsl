@@ -86,8 +86,8 @@ var<private> counted_light_steps: u32;
 #endif
 
 // How near the last place read was to a surface, where it was clear: 1 far away, towards 0 near. The march shortens its
-// steps by it, so that thin edges are not met by some pixels and missed by others; less where a layer is no denser than
-// what a whole step may leap into, in 1/m, which the march says.
+// steps by it, so that thin edges are not met by some pixels and missed by others; less where that layer by itself is no denser
+// than what a whole step may leap into, in 1/m, which the march says.
 var<private> clearness: f32;
 var<private> sparse_extinction: f32;
 

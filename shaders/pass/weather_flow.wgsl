@@ -47,7 +47,7 @@ fn before(uv: vec2f, amount: f32) -> vec2f {
       return uv - flow.along * (amount * bell(across / flow.radius));
     }
     default: {
-      return uv - flow.along * (amount * sin(6.283185307 * dot(uv - flow.centre, flow.across)));
+      return uv - flow.along * (amount * cos(6.283185307 * dot(uv - flow.centre, flow.across)));
     }
   }
 }
@@ -88,7 +88,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_inde
   let weights = vec2f(flow.share, 1.0 - flow.share);
   // A mean of what has nothing to do with each other varies less than either, and less of it would be cloud: as much as they
   // differ in place, it is spread again.
-  let apart = length(places[0] - places[1]) / CORRELATED;
+  let apart = length(nearest(places[0] - places[1])) / CORRELATED;
   let alike = exp(-apart * apart);
   let spread = inverseSqrt(dot(weights, weights) + 2.0 * alike * weights.x * weights.y);
   let blended = weights.x * (texel_at(places[0]) - mean) + weights.y * (texel_at(places[1]) - mean);

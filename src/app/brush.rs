@@ -45,12 +45,12 @@ pub(super) struct UnderWay {
 }
 
 /// What is being made.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Does {
     /// A stroke, the last of so many: with another number it was taken back.
     Stroke { count: usize },
-    /// A flow of the map.
-    Flow { scale_m: f32 },
+    /// A flow, as it was last drawn, and whether it is on the map: without a drag there is none.
+    Flow { layer: Box<MapLayer>, is_laid: bool },
 }
 
 impl UnderWay {
@@ -71,9 +71,8 @@ impl UnderWay {
             if maps.len() >= MAX_LAYERS {
                 return Err(BrushError::Full);
             }
-            maps.push(flow(brush, scale_m));
-            let map = maps.len() - 1;
-            return Ok(Self { height_m: height, layer, map, does: Does::Flow { scale_m }, last: None });
+            let does = Does::Flow { layer: Box::new(flow(brush, scale_m)), is_laid: false };
+            return Ok(Self { height_m: height, layer, map: maps.len(), does, last: None });
         }
         if maps.last().is_none_or(|map| map.source != MapSource::Painted) {
             if maps.len() >= MAX_LAYERS {
@@ -97,13 +96,14 @@ impl UnderWay {
         Ok(Self { height_m: height, layer, map, does: Does::Stroke { count }, last: None })
     }
 
-    /// The parameter that it edits.
-    pub(super) fn key(&self) -> String {
+    /// The parameter that it edits, if it has edited any.
+    pub(super) fn key(&self) -> Option<String> {
         let parameter = match self.does {
             Does::Stroke { .. } => "strokes",
-            Does::Flow { .. } => "flow_begun_secs",
+            Does::Flow { is_laid: true, .. } => "flow_begun_secs",
+            Does::Flow { is_laid: false, .. } => return None,
         };
-        format!("weather.layers.{}.{parameter}", self.map)
+        Some(format!("weather.layers.{}.{parameter}", self.map))
     }
 
     /// Draws it on to where a direction from the eye meets its height.
@@ -115,17 +115,40 @@ impl UnderWay {
         let Some(layer) = scene.layers.get(self.layer) else { return Ok(()) };
         let place = map_place(scene, layer, [east, f64::from(self.height_m), south], time_secs);
         let is_endless = scene.weather.edge == MapEdge::Repeat;
-        let Some(map) = scene.weather.layers.get_mut(self.map) else { return Ok(()) };
-        match self.does {
-            Does::Stroke { count } if map.strokes.0.len() == count => self.dabs(map, place, is_endless),
-            Does::Flow { scale_m } if map.source == MapSource::Flow => {
-                let begin = *self.last.get_or_insert(place);
-                drawn(map, [begin, place], scale_m);
-                Ok(())
+        let is_on_map = is_endless || (place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all());
+        let count = match self.does {
+            Does::Stroke { count } => count,
+            Does::Flow { .. } => {
+                if is_on_map || self.last.is_some() {
+                    self.stir(scene, place, time_secs);
+                }
+                return Ok(());
             }
-            // It was taken back.
-            Does::Stroke { .. } | Does::Flow { .. } => Ok(()),
+        };
+        let map = scene.weather.layers.get_mut(self.map);
+        // Or it was taken back.
+        map.filter(|map| map.strokes.0.len() == count).map_or(Ok(()), |map| self.dabs(map, place, is_endless))
+    }
+
+    /// Draws a flow from where it began to a place.
+    fn stir(&mut self, scene: &mut Scene, place: DVec2, time_secs: f64) {
+        let begin = *self.last.get_or_insert(place);
+        let way = place - begin;
+        // A slip over the horizon is no flow across the whole map.
+        if way == DVec2::ZERO || way.length() > 2.0 {
+            return;
         }
+        let Does::Flow { layer: flow, is_laid } = &mut self.does else { return };
+        let (maps, size_m) = (&mut scene.weather.layers, scene.weather.size_m);
+        let is_as_left = if *is_laid { maps.get(self.map) == Some(&**flow) } else { maps.len() == self.map };
+        // It was taken back, or the map is another.
+        if !is_as_left {
+            return;
+        }
+        drawn(flow, (begin, way), (size_m, time_secs));
+        maps.truncate(self.map);
+        maps.push((**flow).clone());
+        *is_laid = true;
     }
 
     /// Dabs from the last one to a place; they lie evenly on the way.
@@ -179,22 +202,18 @@ fn flow(brush: &PaintState, scale_m: f32) -> MapLayer {
     }
 }
 
-/// A flow from one place on the map to another: it has carried the fastest of its cloud from there to here.
+/// A flow from a place on the map by a way: at this time it has carried the fastest of its cloud so far.
 #[allow(clippy::cast_possible_truncation, reason = "places on the map, to single precision")]
-fn drawn(map: &mut MapLayer, [begin, end]: [DVec2; 2], scale_m: f32) {
+fn drawn(map: &mut MapLayer, (begin, way): (DVec2, DVec2), (size_m, time_secs): (f32, f64)) {
     let on_map = begin - begin.floor();
     (map.flow_east, map.flow_south) = (on_map.x as f32, on_map.y as f32);
-    let way = end - begin;
-    let length_m = way.length() as f32 * scale_m;
-    if length_m <= 0.0 {
-        return;
-    }
     map.flow_heading_deg = (way.x.atan2(-way.y).to_degrees().rem_euclid(360.0) as f32).min(360.0);
     // To the right, vortices turn clockwise.
     let turns_back = map.flow == FlowKind::Vortex && way.x < 0.0;
     map.flow_mps = if turns_back { -map.flow_mps.abs() } else { map.flow_mps.abs() };
-    map.flow_begun_secs = (length_m / map.flow_mps.abs().max(0.1)).min(100_000.0);
+    map.flow_begun_secs = (way.length() as f32 * size_m / map.flow_mps.abs().max(0.1)).min(100_000.0);
     map.flow_secs = map.flow_begun_secs.clamp(TURNS[0], TURNS[1]);
+    map.flow_at_secs = (time_secs as f32).clamp(-1e9, 1e9);
 }
 
 #[cfg(test)]
@@ -206,21 +225,28 @@ mod tests {
     fn a_flow_carries_cloud_from_where_it_begins_to_where_it_ends() {
         let stirred = |flow: FlowKind, to_the: f32| {
             let mut scene = Scene::default();
+            // Whatever part of the map the layer shows.
+            scene.layers[0].map_scale = 0.5;
             let brush = PaintState { stirs: true, flow, radius_m: 2400.0, strength: 0.5, ..PaintState::default() };
             let mut stroke = UnderWay::begin(&mut scene, Some(1500.0), &brush).expect("the sky has a map");
-            assert_eq!(stroke.key(), "weather.layers.1.flow_begun_secs");
             for side in [0.0, 0.1 * to_the, 0.3 * to_the] {
-                stroke.touch(&mut scene, Vec3::new(side, 0.5, -1.0).normalize(), 0.0).expect("there is room");
+                stroke.touch(&mut scene, Vec3::new(side, 0.5, -1.0).normalize(), 20_000.0).expect("there is room");
+                // A press alone is no flow.
+                let is_laid = side != 0.0;
+                assert_eq!((stroke.key().is_some(), scene.weather.layers.len()), (is_laid, 1 + usize::from(is_laid)));
             }
+            assert_eq!(stroke.key().as_deref(), Some("weather.layers.1.flow_begun_secs"));
+            assert_eq!((scene.weather.layers.len(), scene.weather.layers[1].flow_at_secs), (2, 20_000.0));
             assert!(scene.problems().is_empty(), "{:?}", scene.problems());
             (scene.weather.layers.pop().expect("a flow"), scene.weather.size_m)
         };
         let (band, size_m) = stirred(FlowKind::Band, 1.0);
         assert_eq!((band.source, band.flow), (MapSource::Flow, FlowKind::Band));
         assert!((band.flow_heading_deg - 90.0).abs() < 0.5, "towards {}", band.flow_heading_deg);
-        assert!((band.flow_radius * size_m - 2400.0).abs() < 1.0);
+        assert!((band.flow_radius * size_m * 0.5 - 2400.0).abs() < 1.0);
         // The height above the eye is twice the way ahead; the way aside is 0.3 of that.
-        let carried_m = band.flow_mps * band.flow_begun_secs;
+        // In a map of half the scale.
+        let carried_m = band.flow_mps * band.flow_begun_secs * 0.5;
         let eye_m = Scene::default().camera.height_m;
         assert!((carried_m - 0.6 * (1500.0 - eye_m)).abs() < 5.0, "{carried_m} m");
         let (clockwise, _) = stirred(FlowKind::Vortex, 1.0);

@@ -31,15 +31,17 @@ pub(super) fn at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> FlowUni
     let speed = f64::from(layer.flow_mps * layer.opacity) / f64::from(weather.size_m);
     let step_secs = (STEP / speed.abs().max(1e-12)).max(SHORTEST_SECS);
     // What stands still never changes.
-    let time_secs = if speed == 0.0 { 0.0 } else { (time_secs / step_secs).floor() * step_secs };
+    let since_secs = if speed == 0.0 { 0.0 } else { time_secs - f64::from(layer.flow_at_secs) };
+    let since_secs = (since_secs / step_secs).floor() * step_secs;
+    let begun_secs = f64::from(layer.flow_begun_secs);
     let period = f64::from(layer.flow_secs);
     // Two that take turns, each over its period about the age at which it counts most.
-    let turns = [0.0, 0.5].map(|begin| (time_secs / period + begin).rem_euclid(1.0) - 0.5);
+    let turns = [0.0, 0.5].map(|begin| (since_secs / period + begin).rem_euclid(1.0) - 0.5);
     let share = 1.0 - 2.0 * turns[0].abs();
-    let ages = turns.map(|turn| f64::from(layer.flow_begun_secs) + turn * period);
+    let ages = turns.map(|turn| begun_secs + turn * period);
     let heading = f64::from(layer.flow_heading_deg);
     let (along, across) = match layer.flow {
-        FlowKind::Uniform => (shift(towards(heading) * speed * time_secs, weather.edge), DVec2::ZERO),
+        FlowKind::Uniform => (shift(towards(heading) * speed * (begun_secs + since_secs), weather.edge), DVec2::ZERO),
         _ => along_the_map(heading),
     };
     let (ages, share) = if layer.flow == FlowKind::Uniform { ([0.0; 2], 1.0) } else { (ages, share) };

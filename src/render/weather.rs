@@ -197,6 +197,8 @@ impl WeatherMap {
         self.paintings.retain(|index, _| matches!(wanted.get(*index), Some(LayerKey::Painted(..))));
         // What lies below the first that has changed is as it was.
         let same = wanted.iter().zip(&self.made_from).take_while(|(wanted, made)| wanted == made).count();
+        // Should one fail, those before it are known.
+        self.made_from.truncate(same);
         for (index, layer) in wanted.iter().enumerate().skip(same) {
             let ([before, after], share, (mode, opacity)) = match layer {
                 LayerKey::Between(states, share, joining) => (states, share, joining),

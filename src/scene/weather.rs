@@ -33,7 +33,7 @@ choices! {
         Vortex ("Vortex"),
         /// Along a band.
         Band ("Band"),
-        /// To and fro, in stripes as wide as half of the map.
+        /// To and fro, in stripes as wide as half of the map; fastest at its place.
         Shear ("Shear"),
     }
 }
@@ -125,8 +125,10 @@ params! {
         flow_heading_deg: f32 = 90.0, 0.0..=360.0, Degrees;
         /// Time after which a flow begins anew, in turns with another, so that nothing is wound up for ever.
         flow_secs: f32 = 1800.0, 10.0..=100_000.0, Seconds, logarithmic;
-        /// How long a flow has gone on where it counts most: how far it has wound up the map. Uniform ones leave it out.
+        /// How long a flow has gone on where it counts most: how far it has wound up the map.
         flow_begun_secs: f32 = 0.0, 0.0..=100_000.0, Seconds;
+        /// Time at which a flow has gone on for so long.
+        flow_at_secs: f32 = 0.0, -1e9..=1e9, Seconds;
     }
 }
 

@@ -148,7 +148,7 @@ fn one_cloud_is_carried_where_the_flow_goes() {
         (FlowKind::Vortex, 0.0, -quarter, [0.5, 0.4]),
         (FlowKind::Band, 90.0, 2.4, [0.6 + edge(2.4), 0.5]),
         (FlowKind::Band, 45.0, 2.4, [0.6 + aside, 0.5 - aside]),
-        (FlowKind::Shear, 0.0, 2.4, [0.6, 0.5 - edge(2.4) * f64::sin(0.2 * std::f64::consts::PI)]),
+        (FlowKind::Shear, 0.0, 2.4, [0.6, 0.5 - edge(2.4) * f64::cos(0.2 * std::f64::consts::PI)]),
     ] {
         let mut scene = sky(flow);
         scene.weather.layers[0].source = MapSource::Image;

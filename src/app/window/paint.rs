@@ -53,7 +53,7 @@ impl App {
                 break;
             };
             result = stroke.touch(&mut scene, towards, document.time_secs());
-            key = Some(stroke.key());
+            key = stroke.key();
             state.height_m = Some(stroke.height_m);
             done += 1;
             if result.is_err() {
