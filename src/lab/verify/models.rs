@@ -73,7 +73,7 @@ pub(super) fn sun_grids(renderer: &mut Renderer) -> Result<Finding, VerifyError>
             scene.domain.planet_radius_m = if index % 2 == 0 { 6_371_000.0 } else { 300_000.0 };
             (scene.camera.east_m, scene.camera.pitch_deg) = (150_000.0, if height_m > top_m { -20.0 } else { 15.0 });
             let with = |light_grid: u32| Quality { light_grid, light_steps: 12, ..quality() };
-            let [all, coarse, grid] = [0, 16, 160].map(|nodes| show(renderer, &scene, &with(nodes)));
+            let [all, coarse, grid] = [0, 16, 320].map(|nodes| show(renderer, &scene, &with(nodes)));
             let (all, coarse, grid) = (all?, coarse?, grid?);
             if let Some(fault) = grid.fault().or_else(|| coarse.fault()) {
                 let name = format!("a sun at {elevation_deg}° seen from {height_m} m");
