@@ -31,6 +31,13 @@ fn map(renderer: &mut Renderer, scene: &Scene, time_secs: f64) -> Vec<[f32; 4]> 
     renderer.table(&frame, TableKind::WeatherMap).expect("it is made").expect("the sky has a map").rgba
 }
 
+/// The map that the flows carry.
+fn below(renderer: &mut Renderer) -> Vec<[f32; 4]> {
+    let mut still = sky(FlowKind::Vortex);
+    still.weather.layers.pop();
+    map(renderer, &still, 0.0)
+}
+
 fn mean(map: &[[f32; 4]]) -> f64 {
     map.iter().map(|texel| f64::from(texel[0])).sum::<f64>() / map.len() as f64
 }
@@ -47,9 +54,7 @@ fn apart(a: &[[f32; 4]], b: &[[f32; 4]]) -> f64 {
 #[test]
 fn flows_make_no_cloud_and_lose_none_and_any_time_is_reached_directly() {
     let mut renderer = Renderer::new(gpu()).expect("it fits");
-    let mut still = sky(FlowKind::Vortex);
-    still.weather.layers.pop();
-    let below = map(&mut renderer, &still, 0.0);
+    let below = below(&mut renderer);
     for flow in [FlowKind::Uniform, FlowKind::Vortex, FlowKind::Band, FlowKind::Shear] {
         let scene = sky(flow);
         // Where the first of the two counts alone, it has just begun.
@@ -83,9 +88,7 @@ fn flows_make_no_cloud_and_lose_none_and_any_time_is_reached_directly() {
 #[test]
 fn flows_go_where_they_are_told_and_nothing_comes_over_the_edge_of_maps_that_end() {
     let mut renderer = Renderer::new(gpu()).expect("it fits");
-    let mut still = sky(FlowKind::Uniform);
-    still.weather.layers.pop();
-    let below = map(&mut renderer, &still, 0.0);
+    let below = below(&mut renderer);
     // A whole number of texels to the east: 24 km are 512 of them.
     let mut scene = sky(FlowKind::Uniform);
     scene.weather.layers[1].flow_mps = 93.75;
