@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# What takes too long for every change: all checks of `verify`, and the accuracy of all built-in skies. About an hour on
-# two cores.
+# What takes too long for every change: all that the tests can draw, all checks of `verify`, and the accuracy of all
+# built-in skies. Hours on two cores.
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/setup.sh" run
 
+NEPHOSCOPE_THOROUGH=1 cargo test --locked --test gpu
 cargo build --locked --bin nephoscope
 "$program" verify --full
 "$program" verify --skies 2000 --kinds 50

@@ -23,10 +23,11 @@
 @group(2) @binding(0) var<storage, read_write> marched_rays: array<MarchedRay>;
 @group(2) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;
 
-// Below this a ray adds nothing that f32 could tell from rounding.
-const OPAQUE: f32 = 0x1p-24;
+// Below this a ray adds less than a hundred-thousandth of its light.
+const OPAQUE: f32 = 0x1p-17;
 
-// Light steps that were not taken although they should have been.
+// Light steps that were taken, and that were not although they should have been.
+var<private> light_steps: u32;
 var<private> lost: u32;
 
 // How steps towards the light spread: by their way over this length.
@@ -44,8 +45,12 @@ fn converged_sun_depth(p: vec3f) -> f32 {
     t += step;
     step *= steps.y;
     taken += 1u;
+    if (depth > scene.opaque_sun_depth) {
+      break;
+    }
   }
-  lost += truth.light_steps - taken;
+  light_steps += taken;
+  lost += select(truth.light_steps - taken, 0u, depth > scene.opaque_sun_depth);
   return depth;
 }
 
@@ -74,7 +79,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   var transmittance = exp(-ray.depth);
   var t = max(ray.distance_m, segments.first.x);
   var steps = 0u;
-  var light_steps = 0u;
   var is_paused = false;
   for (var i = 0u; i < truth.per_dispatch; i++) {
     if (steps + light_steps >= truth.work_per_dispatch) {
@@ -98,7 +102,6 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if (extinction > 0.0) {
       let altitude = altitude_of(p);
 #if LIT
-      light_steps += truth.light_steps;
       var source = source_of(key_light_at(p, altitude), converged_sun_depth(p), altitude, densities);
 #else
       var source = source_of(vec3f(0.0), 0.0, altitude, densities);

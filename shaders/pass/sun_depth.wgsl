@@ -81,8 +81,7 @@ fn sun_optical_depth(p: vec3f, level: f32, count: u32) -> f32 {
 #endif
     depth += own;
     t += step;
-    // Beyond this depth not even the widest octave passes anything.
-    if (depth > 600.0 || t >= way) {
+    if (depth > scene.opaque_sun_depth || t >= way) {
       break;
     }
 #if SUN_GRID

@@ -16,20 +16,44 @@ const SAMPLE_CELLS: f32 = 0.75;
 const MOST_SAMPLES: u32 = 8u;
 // Samples from the first plane out of the clouds, where that is not their top.
 const FIRST_SAMPLES: u32 = 16u;
-// More than even the widest octave lets pass.
-const OPAQUE: f32 = 1000.0;
+// Keeps depths finite; more than any octave lets pass.
+const DEEPEST: f32 = 1e6;
 
 fn plane_value(at: vec2u, plane: u32, size: vec2u) -> f32 {
   return planes[((plane & 1u) * size.y + at.y) * size.x + at.x];
 }
 
+// Weights of four nodes at a fraction between the middle two, nodes `low` and the next (Catmull & Rom 1974). Beyond the
+// first and the last node values go on as between the two before.
+fn cubic_weights(f: f32, low: u32, last: u32) -> vec4f {
+  let g = 1.0 - f;
+  let w = vec4f(-0.5 * f * g * g, 1.0 + f * f * (1.5 * f - 2.5), 1.0 + g * g * (1.5 * g - 2.5), -0.5 * g * f * f);
+  let before = select(0.0, w.x, low == 0u);
+  let behind = select(0.0, w.w, low + 2u > last);
+  return w + vec4f(-before, 2.0 * before - behind, 2.0 * behind - before, -behind);
+}
+
+// Cubic, as linear reads would blur the planes a little more each time; never beyond the four nodes about the place.
 fn value_ahead(node: vec2f, plane: u32, size: vec2u) -> f32 {
   let low = min(vec2u(node), size - 1u);
-  let high = min(low + 1u, size - 1u);
   let f = node - vec2f(low);
-  return mix(
-    mix(plane_value(low, plane, size), plane_value(vec2u(high.x, low.y), plane, size), f.x),
-    mix(plane_value(vec2u(low.x, high.y), plane, size), plane_value(high, plane, size), f.x), f.y);
+  let across = cubic_weights(f.x, low.x, size.x - 1u);
+  let along = cubic_weights(f.y, low.y, size.y - 1u);
+  var value = 0.0;
+  var least = 1e9;
+  var most = 0.0;
+  for (var j = 0u; j < 4u; j++) {
+    for (var i = 0u; i < 4u; i++) {
+      let at = min(max(low + vec2u(i, j), vec2u(1u)) - 1u, size - 1u);
+      let own = plane_value(at, plane, size);
+      value += across[i] * along[j] * own;
+      if ((i == 1u || i == 2u) && (j == 1u || j == 2u)) {
+        least = min(least, own);
+        most = max(most, own);
+      }
+    }
+  }
+  return clamp(value, least, most);
 }
 
 // Distance along the light to the plane ahead.
@@ -77,7 +101,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let ahead = sun_grid_node(p + scene.towards_light * way);
     depth += sun_grid_depth(value_ahead(select(ahead.zy, ahead.xz, scene.sun_grid_is_low == 0u), plane + 1u, size));
   }
-  depth = min(depth, OPAQUE);
+  depth = min(depth, DEEPEST);
   let value = log(1.0 + depth);
   planes[((plane & 1u) * size.y + id.y) * size.x + id.x] = value;
   textureStore(sun_depths_out, node, vec4f(value));

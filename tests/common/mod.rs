@@ -27,6 +27,11 @@ pub(crate) fn programs() -> &'static ProgramCache {
     PROGRAMS.get_or_init(|| ProgramCache::new(gpu(), TABLE))
 }
 
+/// Whether to try all there is, as `scripts/nightly.sh` does, where a part is enough for every change.
+pub(crate) fn thorough() -> bool {
+    std::env::var_os("NEPHOSCOPE_THOROUGH").is_some()
+}
+
 /// One evaluation: four vectors of raw bits, as `Case` in `shaders/test/eval_io.wgsl`.
 pub(crate) type Case = [[u32; 4]; 4];
 

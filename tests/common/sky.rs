@@ -2,6 +2,7 @@
 
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 
+use nephoscope::render::tables::{Table, TableKind};
 use nephoscope::render::{FrameReport, LinearImage, Renderer};
 use nephoscope::scene::{Frame, Output, Quality, Scene, UpdateFraction};
 
@@ -34,6 +35,14 @@ pub(crate) fn quick() -> Quality {
 /// A frame at time 0.
 pub(crate) fn frame<'a>(scene: &'a Scene, quality: &'a Quality, size: [u32; 2], output: Output) -> Frame<'a> {
     Frame { scene, quality, size, time_secs: 0.0, output, window: None }
+}
+
+/// A table of a sky, made without what is only made from it.
+pub(crate) fn table(renderer: &mut Renderer, scene: &Scene, time_secs: f64, kind: TableKind) -> Table {
+    let quality = Quality { light_grid: 0, skip_clear: false, ..Quality::default() };
+    let frame = Frame { scene, quality: &quality, size: [32, 18], time_secs, output: Output::Display, window: None };
+    let made = renderer.table(&frame, kind).unwrap_or_else(|error| panic!("{error}"));
+    made.unwrap_or_else(|| panic!("the sky has no {kind:?}"))
 }
 
 /// Renders a frame; a failure names itself.

@@ -123,6 +123,7 @@ impl March {
             empty_stride: 1.0,
             light_steps: 8,
             light_reach_m: 1e6,
+            opaque_sun_depth: 600.0,
             detail_distance_m: 1e6,
             max_distance_m: 1e6,
             ..SceneUniforms::zeroed()

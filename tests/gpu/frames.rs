@@ -11,6 +11,7 @@ use nephoscope::scene::{
 
 use crate::common::Random;
 use crate::common::sky::{frame, linear, quick, render, renderer};
+use crate::common::thorough;
 
 fn bits(rgba: &[[f32; 4]]) -> Vec<[u32; 4]> {
     rgba.iter().map(|texel| texel.map(f32::to_bits)).collect()
@@ -150,8 +151,8 @@ fn random_sky(seed: u32) -> (Scene, Quality) {
 
 #[test]
 fn any_sky_in_range_is_finite_light() {
-    let mut lit = 0;
-    for seed in 0..40 {
+    let (mut lit, draws) = (0, if thorough() { 40 } else { 16 });
+    for seed in 0..draws {
         let (scene, quality) = random_sky(seed);
         let output = if seed % 8 == 1 { Output::CloudsAlone } else { Output::Linear };
         let mut renderer = renderer();
@@ -164,9 +165,9 @@ fn any_sky_in_range_is_finite_light() {
             "seed {seed}: distance"
         );
         assert!(output == Output::CloudsAlone || image.rgba.iter().all(|texel| texel[3] == 1.0), "seed {seed}: opaque");
-        lit += usize::from(image.rgba.iter().any(|texel| texel[1] > 0.0));
+        lit += u32::from(image.rgba.iter().any(|texel| texel[1] > 0.0));
     }
-    assert!(lit > 25, "only {lit} of 40 pictures show anything");
+    assert!(lit * 8 > draws * 5, "only {lit} of {draws} pictures show anything");
 }
 
 #[test]

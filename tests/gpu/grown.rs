@@ -4,8 +4,9 @@ use std::path::Path;
 
 use nephoscope::render::Renderer;
 use nephoscope::render::tables::TableKind;
-use nephoscope::scene::{Frame, MapSource, Output, Quality, Scene};
+use nephoscope::scene::{MapSource, Scene};
 
+use crate::common::sky::table;
 use crate::common::{Random, gpu};
 
 const SIDE: usize = 512;
@@ -44,9 +45,7 @@ fn saved(folder: &Path, pixels: &[[f32; 4]]) -> String {
 }
 
 fn map(renderer: &mut Renderer, scene: &Scene, time_secs: f64) -> Vec<[f32; 4]> {
-    let quality = Quality::default();
-    let frame = Frame { scene, quality: &quality, size: [32, 18], time_secs, output: Output::Display, window: None };
-    renderer.table(&frame, TableKind::WeatherMap).expect("it is made").expect("the sky has a map").rgba
+    table(renderer, scene, time_secs, TableKind::WeatherMap).rgba
 }
 
 /// Values that shares of all texels lie below, of a channel.

@@ -5,10 +5,9 @@ use std::sync::Arc;
 use nephoscope::render::Renderer;
 use nephoscope::render::tables::{Table, TableKind};
 use nephoscope::render::uniforms::map_place;
-use nephoscope::scene::{
-    Brush, CloudKind, Frame, MapBlend, MapEdge, MapLayer, MapSource, Output, Quality, Scene, Stroke, Strokes,
-};
+use nephoscope::scene::{Brush, CloudKind, MapBlend, MapEdge, MapLayer, MapSource, Scene, Stroke, Strokes};
 
+use crate::common::sky::table;
 use crate::common::{Random, gpu};
 
 fn sky(strokes: Vec<Stroke>, over_generated: bool) -> Scene {
@@ -23,10 +22,7 @@ fn sky(strokes: Vec<Stroke>, over_generated: bool) -> Scene {
 }
 
 fn map(renderer: &mut Renderer, scene: &Scene) -> Table {
-    let quality = Quality::default();
-    let frame =
-        Frame { scene, quality: &quality, size: [32, 18], time_secs: 0.0, output: Output::Display, window: None };
-    renderer.table(&frame, TableKind::WeatherMap).expect("it is made").expect("the sky has a map")
+    table(renderer, scene, 0.0, TableKind::WeatherMap)
 }
 
 fn renderer() -> Renderer {
@@ -124,8 +120,12 @@ fn strokes_are_what_their_dabs_say_and_repeat_with_the_map() {
 fn a_stroke_that_is_taken_back_leaves_nothing_and_one_that_grows_is_one() {
     let mut random = Random::new(72);
     let strokes: Vec<Stroke> = (0..5).map(|_| any_stroke(&mut random)).collect();
-    let fresh: Vec<Table> = (0..=5).map(|count| map(&mut renderer(), &sky(strokes[..count].to_vec(), true))).collect();
-    let mut kept = renderer();
+    let (mut kept, mut other) = (renderer(), renderer());
+    let mut afresh = |strokes: &[Stroke]| {
+        other.forget_everything().expect("nothing is under way");
+        map(&mut other, &sky(strokes.to_vec(), true))
+    };
+    let fresh: Vec<Table> = (0..=5).map(|count| afresh(&strokes[..count])).collect();
     // There and back again, one step and several at once.
     for count in [0, 1, 2, 3, 4, 5, 4, 3, 5, 1, 0, 5, 2] {
         assert!(map(&mut kept, &sky(strokes[..count].to_vec(), true)) == fresh[count], "{count} strokes");
@@ -134,14 +134,14 @@ fn a_stroke_that_is_taken_back_leaves_nothing_and_one_that_grows_is_one() {
     for dabs in 1..=8 {
         let mut under_way = strokes[..3].to_vec();
         under_way[2].dabs.truncate(dabs);
-        let grown = map(&mut kept, &sky(under_way.clone(), true));
+        let grown = map(&mut kept, &sky(under_way, true));
         assert!(dabs < 8 || grown == fresh[3], "the whole stroke");
-        let _ = under_way;
     }
     // Another stroke in its place.
-    let mut other = strokes[..3].to_vec();
-    other[1].radius *= 0.5;
-    assert!(map(&mut kept, &sky(other.clone(), true)) == map(&mut renderer(), &sky(other, true)), "it is drawn anew");
+    let mut changed = strokes[..3].to_vec();
+    changed[1].radius *= 0.5;
+    let drawn_anew = afresh(&changed);
+    assert!(map(&mut kept, &sky(changed, true)) == drawn_anew, "it is drawn anew");
 }
 
 #[test]

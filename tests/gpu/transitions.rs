@@ -6,11 +6,17 @@ use nephoscope::scene::{Output, Quality, Scene, UpdateFraction, morph};
 use crate::common::sky::{frame, render, renderer};
 
 const SIZE: [u32; 2] = [32, 18];
-const FRAMES: usize = 60;
+const FRAMES: usize = 40;
 
 /// Mean change of the displayed light between consecutive pictures.
 fn steps(sky: &dyn Fn(f32) -> Scene) -> Vec<f64> {
-    let quality = Quality { update: UpdateFraction::Full, pixel_samples: 1, shadow_map_px: 64, ..Quality::default() };
+    let quality = Quality {
+        update: UpdateFraction::Full,
+        pixel_samples: 1,
+        shadow_map_px: 64,
+        light_grid: 96,
+        ..Quality::default()
+    };
     let mut renderer = renderer();
     let pictures: Vec<Vec<u8>> = (0..=FRAMES)
         .map(|index| {

@@ -6,8 +6,8 @@ use super::camera::Eye;
 use super::scene::{LayerUniforms, SceneUniforms};
 use crate::plan::{KeyLight, Lighting};
 use crate::scene::{
-    BodyForm, Camera, CloudLayer, DensityModel, DomainKind, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scene,
-    ShapeRole, Wind,
+    BodyForm, Camera, CloudLayer, DensityModel, DomainKind, Frame, MAX_LAYERS, MapEdge, PhaseKind, Quality, Scattering,
+    Scene, ShapeRole, Wind,
 };
 
 /// Velocity of the wind: east in x, south in y.
@@ -422,10 +422,16 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
         step_depth: quality.step_depth,
         light_share: quality.light_share,
         sun_grid_is_low: 0,
+        opaque_sun_depth: opaque_sun_depth(light, quality.octaves),
         pad2: 0.0,
-        pad3: 0.0,
         layers,
     }
+}
+
+/// Optical depth towards the light behind which even the widest octave passes less than 2⁻¹⁷ of it.
+fn opaque_sun_depth(light: &Scattering, octaves: u32) -> f32 {
+    let widest = light.octave_extinction.powi(octaves.cast_signed());
+    17.0 * std::f32::consts::LN_2 / widest.clamp(1e-6, 1.0)
 }
 
 impl LayerUniforms {

@@ -237,10 +237,10 @@ gpu_struct! {
         pub light_share: f32,
         /// Whether planes of the grid of sun depth follow each other sideways, as for low light.
         pub sun_grid_is_low: u32,
+        /// Optical depth towards the light behind which nothing is seen of it.
+        pub opaque_sun_depth: f32,
         /// Keeps the layers apart.
         pub pad2: f32,
-        /// The same.
-        pub pad3: f32,
         /// The layers; as many as the program was compiled for count.
         pub layers: [LayerUniforms; 4],
     }

@@ -10,7 +10,7 @@ use crate::common::sky::{frame, quick};
 
 pub(super) const SIZE: [u32; 2] = [48, 27];
 
-#[derive(Clone)]
+#[derive(Clone, PartialEq)]
 pub(super) struct Setup {
     pub(super) scene: Scene,
     pub(super) quality: Quality,
