@@ -134,6 +134,12 @@ effects! {
     WeatherMap ("weather map", "Where clouds stand.") {
         flags: [], bindings: ["weather_map"], passes: ["weather_map"], essential: true
     }
+    GrowingMap ("growing map", "Weather maps that grow out of an image.") {
+        flags: [], bindings: ["example_normal"], passes: ["weather_grow"], essential: true
+    }
+    Flows ("flows", "Flows that carry the weather map.") {
+        flags: [], bindings: ["flow"], passes: ["weather_flow"], may_differ: 1e-3
+    }
     Painting ("painted map", "Clouds painted on the weather map, or taken away from it.") {
         flags: [], bindings: ["painted"], passes: ["paint"]
     }

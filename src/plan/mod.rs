@@ -21,7 +21,7 @@ pub use variant::{MarchVariant, Phases, SunGridPlan};
 use std::ops::Range;
 
 use crate::choices;
-use crate::scene::{Frame, MapSource, Output, Quality, Scene, ToneMap, UpdateFraction};
+use crate::scene::{Frame, MapLayer, MapSource, Output, Quality, Scene, ToneMap, UpdateFraction};
 use decide::Verdicts;
 
 choices! {
@@ -81,10 +81,19 @@ pub struct MapLayers {
 }
 
 impl MapLayers {
-    fn of(scene: &Scene) -> Self {
+    fn of(scene: &Scene, is_read: bool, why: &mut Verdicts) -> Self {
         let maps = &scene.weather.layers;
         let any = |source: MapSource| maps.iter().any(|map| map.source == source);
-        Self { joined: maps.len() > 1, grown: any(MapSource::Grown), flow: any(MapSource::Flow) }
+        let flows = |map: &MapLayer| map.source == MapSource::Flow && map.flow_mps * map.opacity != 0.0;
+        let unread = (!is_read, Need::Impossible, "no layer is placed by the map");
+        let no_image = (!any(MapSource::Grown), Need::Impossible, "no layer of the map grows");
+        let no_flow = (!any(MapSource::Flow), Need::Impossible, "the map has no flows");
+        let stands = (!maps.iter().any(flows), Need::Needless, "they stand still");
+        Self {
+            joined: maps.len() > 1,
+            grown: why.unless(Effect::GrowingMap, &[unread, no_image], "a layer of the map grows"),
+            flow: why.unless(Effect::Flows, &[unread, no_flow, stands], "they carry the map"),
+        }
     }
 }
 
@@ -143,6 +152,7 @@ impl FramePlan {
         let ground = lights::ground(frame, &mut why);
         let field = MarchVariant::of_field(frame, &mut why);
         let has_field = field.is_some();
+        let map_layers = MapLayers::of(scene, field.is_some_and(|field| !field.mapless), &mut why);
         let cloud_rows = cloud_rows(frame, has_field, &mut why);
         let has_clouds = !cloud_rows.is_empty();
         let shadow_px = lights::cloud_shadow(frame, (ground.is_some(), has_field), &lighting, &mut why);
@@ -176,7 +186,7 @@ impl FramePlan {
             tone_map: scene.display.tone_map,
             graded,
             stripes: forced.stripes && frame.output == Output::Display,
-            map_layers: MapLayers::of(scene),
+            map_layers,
             tracks: false,
             pixel_samples: 1,
             verdicts: why.complete(),

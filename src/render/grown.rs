@@ -70,7 +70,7 @@ impl Example {
             ("example_back", wgpu::BindingResource::TextureView(&self.back.view)),
             ("map_out", wgpu::BindingResource::TextureView(&texture.view)),
         ];
-        jobs.push(context.whole("weather_map", &key(), &bound, Extent::image([SIDE; 2]))?);
+        jobs.push(context.whole("weather_grow", &key(), &bound, Extent::image([SIDE; 2]))?);
         Ok(texture)
     }
 }

@@ -142,7 +142,8 @@ impl Renderer {
         self.living.update(&context, (frame, plan), jobs)?;
         match plan.march.filter(|march| !march.mapless) {
             Some(march) => {
-                self.weather.update(&context, (&scene.weather, frame.time_secs), plan.runs(Effect::Painting), jobs)?;
+                let runs = (plan.runs(Effect::Painting), plan.map_layers.flow);
+                self.weather.update(&context, (&scene.weather, frame.time_secs), runs, jobs)?;
                 let tracks = plan.tracks && march.baked.is_none();
                 self.weather.update_bounds(&context, tracks, jobs)?;
                 // Shadows alone need no clear ways; a view that turns back does.

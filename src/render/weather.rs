@@ -86,16 +86,19 @@ impl WeatherMap {
         }
     }
 
-    /// Appends the jobs that bring the map to a time.
+    /// Appends the jobs that bring the map to a time, with what is painted on it and flows if they run.
     pub(super) fn update(
         &mut self,
         context: &Context<'_>,
         (weather, time_secs): (&Weather, f64),
-        is_painted: bool,
+        (is_painted, flows): (bool, bool),
         jobs: &mut Vec<Job>,
     ) -> Result<(), RenderError> {
         let mut wanted = Vec::new();
         for (index, layer) in weather.layers.iter().enumerate() {
+            if layer.source == MapSource::Flow && !flows {
+                continue;
+            }
             let mut key =
                 layer_at(layer, weather, time_secs).map_err(|message| RenderError::Map { layer: index, message })?;
             match &mut key {
@@ -281,7 +284,7 @@ impl WeatherMap {
             ("map_below", wgpu::BindingResource::TextureView(&below.view)),
             ("map_out", wgpu::BindingResource::TextureView(&self.joined[index].view)),
         ];
-        jobs.push(context.whole("weather_map", &flow::key(), &bound, Extent::image([SIDE; 2]))?);
+        jobs.push(context.whole("weather_flow", &flow::key(), &bound, Extent::image([SIDE; 2]))?);
         Ok(())
     }
 

@@ -266,6 +266,27 @@ pub(super) fn scenes(effect: Effect) -> Example {
         ),
         Effect::Baked => example(boxed, base, &[], false),
         Effect::WeatherMap => example(base, |s| s.scene.layers.clear(), &[], false),
+        Effect::GrowingMap => example(
+            |s| {
+                let layer = &mut s.scene.weather.layers[0];
+                layer.source = MapSource::Grown;
+                layer.image.0 = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/heaps.png").to_owned();
+            },
+            base,
+            &[],
+            false,
+        ),
+        Effect::Flows => {
+            const ON: Change = |s| {
+                let whirl = MapLayer { flow_begun_secs: 300.0, flow_mps: 30.0, ..MapLayer::default() };
+                s.scene.weather.layers.push(MapLayer { source: MapSource::Flow, ..whirl });
+            };
+            const STANDS: Change = |s| {
+                ON(s);
+                s.scene.weather.layers[1].flow_mps = 0.0;
+            };
+            example(ON, STANDS, &[STANDS], true)
+        }
         Effect::Painting => example(
             |s| {
                 let dabs = (0..40).map(|i| [0.1 * (i % 8) as f32, 0.2 * (i / 8) as f32]).collect();
