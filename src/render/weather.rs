@@ -61,7 +61,7 @@ pub(super) struct WeatherMap {
     states: Vec<State>,
     /// Images that maps grow from.
     examples: Vec<Example>,
-    /// The joined map of each layer over those below it; the last is the map.
+    /// The joined map of each layer over those below it, or a clear one; the last is the map.
     joined: Vec<Texture>,
     /// The greatest field of the map around each of its cells, by name, where paths track by it.
     bounds: Vec<(&'static str, Texture)>,
@@ -119,7 +119,7 @@ impl WeatherMap {
             }
             wanted.push(key);
         }
-        let is_same = wanted == self.made_from;
+        let is_same = wanted == self.made_from && !self.joined.is_empty();
         let is_wanted = |state: &State| {
             wanted.iter().any(|layer| matches!(layer, LayerKey::Between(states, ..) if states.contains(&state.key)))
         };
@@ -192,8 +192,9 @@ impl WeatherMap {
     }
 
     fn join(&mut self, context: &Context<'_>, wanted: &[LayerKey], jobs: &mut Vec<Job>) -> Result<(), GpuError> {
+        // Without layers the map is clear, as textures begin.
         self.joined.truncate(wanted.len());
-        while self.joined.len() < wanted.len() {
+        while self.joined.len() < wanted.len().max(1) {
             self.joined.push(Texture::new_2d(context.gpu, "weather_map", [SIDE; 2], FORMAT)?);
         }
         let linear_repeat = repeat_sampler(context.gpu);

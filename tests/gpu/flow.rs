@@ -163,3 +163,17 @@ fn one_cloud_is_carried_where_the_flow_goes() {
         assert!(off < 0.01, "{flow:?} at {mps} m/s towards {heading}° carries it to {seen:?}, not {expected:?}");
     }
 }
+
+#[test]
+fn without_layers_and_under_flows_alone_the_map_is_clear() {
+    let mut renderer = Renderer::new(gpu()).expect("it fits");
+    let mut scene = sky(FlowKind::Vortex);
+    assert!(mean(&map(&mut renderer, &scene, 300.0)) > 0.1, "there is cloud to lose");
+    let mut is_clear = |scene: &Scene| map(&mut renderer, scene, 300.0).iter().flatten().all(|value| *value == 0.0);
+    scene.weather.layers.remove(0);
+    assert!(is_clear(&scene), "a flow carries nothing");
+    scene.weather.layers[0].flow_mps = 0.0;
+    assert!(is_clear(&scene), "a flow that stands still");
+    scene.weather.layers.clear();
+    assert!(is_clear(&scene), "no layer");
+}
