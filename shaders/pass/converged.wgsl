@@ -1,6 +1,6 @@
-// The march's own model by brute force: plain midpoint steps without early exit, without skipping, with all detail at
-// the finest level, and a march towards the light that reaches the end of the domain. What is left of an error falls as
-// the square of the steps.
+// The march's own model by brute force: plain midpoint steps without skipping, with all detail at the finest level, to where
+// nothing passes any more; and a march towards the light to there or to the end of the domain. What is left of an error falls
+// as the square of the steps.
 //
 // One dispatch takes a ray so many steps further and leaves it in a buffer: llvmpipe ends an invocation after 65,535
 // loop iterations without a word. counters: rays under way, view steps, light steps, rays that lost iterations.
@@ -23,7 +23,7 @@
 @group(2) @binding(0) var<storage, read_write> marched_rays: array<MarchedRay>;
 @group(2) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;
 
-// Below this a ray adds less than a hundred-thousandth of its light.
+// A ray of which less is left ends, and nothing of it passes.
 const OPAQUE: f32 = 0x1p-17;
 
 // Light steps that were taken, and that were not although they should have been.
@@ -33,7 +33,10 @@ var<private> lost: u32;
 // How steps towards the light spread: by their way over this length.
 const LIGHT_SPREAD_PER_M: f32 = 0.01;
 
-// Optical depth towards the key light over the whole way out of the domain.
+// Behind which no light is.
+const NO_LIGHT_DEPTH: f32 = 1e9;
+
+// Optical depth towards the key light over the whole way out of the domain, or one that no light passes.
 fn converged_sun_depth(p: vec3f) -> f32 {
   let steps = light_steps_over(domain_exit(p, scene.towards_light), truth.light_steps, LIGHT_SPREAD_PER_M);
   var step = steps.x;
@@ -46,11 +49,12 @@ fn converged_sun_depth(p: vec3f) -> f32 {
     step *= steps.y;
     taken += 1u;
     if (depth > scene.opaque_sun_depth) {
+      depth = NO_LIGHT_DEPTH;
       break;
     }
   }
   light_steps += taken;
-  lost += select(truth.light_steps - taken, 0u, depth > scene.opaque_sun_depth);
+  lost += select(truth.light_steps - taken, 0u, depth == NO_LIGHT_DEPTH);
   return depth;
 }
 
@@ -116,6 +120,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
       ray.distance_sum += share * middle;
       ray.weight_sum += share;
       transmittance *= 1.0 - alpha;
+      transmittance = select(0.0, transmittance, transmittance >= OPAQUE);
     }
     // A step that rounding loses would never end.
     t = max(t + step, t * (1.0 + 0x1p-23));

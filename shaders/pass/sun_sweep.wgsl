@@ -16,7 +16,7 @@ const SAMPLE_CELLS: f32 = 0.75;
 const MOST_SAMPLES: u32 = 8u;
 // Samples from the first plane out of the clouds, where that is not their top.
 const FIRST_SAMPLES: u32 = 16u;
-// Keeps depths finite; more than any octave lets pass.
+// Keeps depths finite.
 const DEEPEST: f32 = 1e6;
 
 fn plane_value(at: vec2u, plane: u32, size: vec2u) -> f32 {

@@ -83,11 +83,14 @@ pub struct MapLayers {
 impl MapLayers {
     fn of(scene: &Scene, is_read: bool, why: &mut Verdicts) -> Self {
         let maps = &scene.weather.layers;
+        // Flows with nothing below them carry nothing.
+        let first = maps.iter().position(|map| map.source != MapSource::Flow).unwrap_or(maps.len());
+        let maps = &maps[first..];
         let any = |source: MapSource| maps.iter().any(|map| map.source == source);
         let flows = |map: &MapLayer| map.source == MapSource::Flow && map.flow_mps * map.opacity != 0.0;
         let unread = (!is_read, Need::Impossible, "no layer is placed by the map");
         let no_image = (!any(MapSource::Grown), Need::Impossible, "no layer of the map grows");
-        let no_flow = (!any(MapSource::Flow), Need::Impossible, "the map has no flows");
+        let no_flow = (!any(MapSource::Flow), Need::Impossible, "no layer of the map flows");
         let stands = (!maps.iter().any(flows), Need::Needless, "they stand still");
         Self {
             joined: maps.len() > 1,

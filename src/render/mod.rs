@@ -268,6 +268,8 @@ impl Renderer {
         if forced != self.forced {
             self.forced = forced;
             self.history = None;
+            // A moving picture would keep one that is a little behind.
+            self.sun_grid.clear();
         }
     }
 

@@ -96,7 +96,8 @@ impl WeatherMap {
     ) -> Result<(), RenderError> {
         let mut wanted = Vec::new();
         for (index, layer) in weather.layers.iter().enumerate() {
-            if layer.source == MapSource::Flow && !flows {
+            // Without a layer below it a flow carries nothing.
+            if layer.source == MapSource::Flow && (wanted.is_empty() || !flows) {
                 continue;
             }
             let mut key =
@@ -192,8 +193,8 @@ impl WeatherMap {
     }
 
     fn join(&mut self, context: &Context<'_>, wanted: &[LayerKey], jobs: &mut Vec<Job>) -> Result<(), GpuError> {
-        // Without layers the map is clear, as textures begin.
         self.joined.truncate(wanted.len());
+        // Without layers the map is clear, as textures begin.
         while self.joined.len() < wanted.len().max(1) {
             self.joined.push(Texture::new_2d(context.gpu, "weather_map", [SIDE; 2], FORMAT)?);
         }
@@ -262,7 +263,7 @@ impl WeatherMap {
         Ok(())
     }
 
-    /// Carries the map below a flow. Below the lowest there is nothing, which no layer but a flow is over.
+    /// Carries the map below a flow.
     fn carry(
         &mut self,
         context: &Context<'_>,
@@ -270,14 +271,7 @@ impl WeatherMap {
         uniforms: &FlowUniforms,
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
-        let nothing;
-        let below = match index.checked_sub(1) {
-            Some(below) => &self.joined[below],
-            None => {
-                nothing = Texture::new_2d(context.gpu, "weather_map", [1; 2], FORMAT)?;
-                &nothing
-            }
-        };
+        let Some(below) = index.checked_sub(1).map(|below| &self.joined[below]) else { return Ok(()) };
         let buffer = context.gpu.uniform("flow", bytemuck::bytes_of(uniforms));
         let bound = vec![
             ("flow", buffer.as_entire_binding()),

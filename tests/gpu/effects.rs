@@ -186,7 +186,7 @@ fn leaving_everything_needless_out_changes_nothing() {
         (builtin.name.to_owned(), scene)
     });
     let (every, draws) = if thorough() { (1, 24) } else { (3, 8) };
-    // Now the first of three, now the second: a third of those kept look from where their makers did.
+    // Another one of each three: a third of those kept look from where their makers did.
     let builtin = builtin.enumerate().filter(|(index, _)| (index + index / every) % every == 0).map(|(_, sky)| sky);
     let drawn = (0..draws).map(|index| (format!("sky {index}"), skies::draw(index, 8).scene));
     let mut failures = Vec::new();

@@ -2,7 +2,7 @@
 
 use nephoscope::render::Renderer;
 use nephoscope::render::tables::TableKind;
-use nephoscope::scene::{FlowKind, MapEdge, MapLayer, MapSource, Scene};
+use nephoscope::scene::{FlowKind, MapBlend, MapEdge, MapLayer, MapSource, Scene};
 
 use crate::common::gpu;
 use crate::common::sky::table;
@@ -169,11 +169,21 @@ fn without_layers_and_under_flows_alone_the_map_is_clear() {
     let mut renderer = Renderer::new(gpu()).expect("it fits");
     let mut scene = sky(FlowKind::Vortex);
     assert!(mean(&map(&mut renderer, &scene, 300.0)) > 0.1, "there is cloud to lose");
-    let mut is_clear = |scene: &Scene| map(&mut renderer, scene, 300.0).iter().flatten().all(|value| *value == 0.0);
+    let is_clear = |renderer: &mut Renderer, scene: &Scene| {
+        map(renderer, scene, 300.0).iter().flatten().all(|value| *value == 0.0)
+    };
     scene.weather.layers.remove(0);
-    assert!(is_clear(&scene), "a flow carries nothing");
+    assert!(is_clear(&mut renderer, &scene), "a flow carries nothing");
     scene.weather.layers[0].flow_mps = 0.0;
-    assert!(is_clear(&scene), "a flow that stands still");
+    assert!(is_clear(&mut renderer, &scene), "a flow that stands still");
+    // Nor does one hide from the next layer that it is the lowest.
+    let own = MapLayer { blend: MapBlend::Subtract, ..MapLayer::default() };
+    scene.weather.layers.push(own);
+    let over = map(&mut renderer, &scene, 300.0);
+    scene.weather.layers[0].flow_mps = 20.0;
+    assert!(map(&mut renderer, &scene, 300.0) == over, "a flow over nothing, moving or not");
+    scene.weather.layers.remove(0);
+    assert!(map(&mut renderer, &scene, 300.0) == over && mean(&over) > 0.1, "as without it");
     scene.weather.layers.clear();
-    assert!(is_clear(&scene), "no layer");
+    assert!(is_clear(&mut renderer, &scene), "no layer");
 }

@@ -430,7 +430,9 @@ pub(crate) fn scene_uniforms(frame: &Frame<'_>, lighting: &Lighting, eye: &Eye) 
 
 /// Optical depth towards the light behind which even the widest octave passes less than 2⁻¹⁷ of it.
 fn opaque_sun_depth(light: &Scattering, octaves: u32) -> f32 {
-    let widest = light.octave_extinction.powi(octaves.cast_signed());
+    // Where it is 0 depth matters to the first alone.
+    let is_wider = light.octave_extinction > 0.0;
+    let widest = if is_wider { light.octave_extinction.powi(octaves.cast_signed()) } else { 1.0 };
     17.0 * std::f32::consts::LN_2 / widest.clamp(1e-6, 1.0)
 }
 
@@ -444,6 +446,17 @@ impl LayerUniforms {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_octave_passes_what_is_opaque() {
+        let at = |octave_extinction, octaves| {
+            opaque_sun_depth(&Scattering { octave_extinction, ..Scattering::default() }, octaves)
+        };
+        assert!((at(0.35, 0) - 11.78).abs() < 0.01 && at(1.0, 5) == at(0.35, 0), "the first is the widest");
+        assert!(((-at(0.35, 5) * 0.35_f32.powi(5)).exp() * 131_072.0 - 1.0).abs() < 1e-3, "of the fifth passes 2⁻¹⁷");
+        assert!(at(0.0, 7) == at(0.35, 0), "wider ones do not see depth");
+        assert!(at(1e-9, 7).is_finite(), "and none is infinitely wide");
+    }
 
     #[test]
     fn a_west_wind_blows_to_the_east() {
