@@ -7,7 +7,6 @@ use crate::common::sky::{frame, render, renderer};
 use crate::common::thorough;
 
 const SIZE: [u32; 2] = [32, 18];
-const FRAMES: usize = 40;
 
 /// Mean change of the displayed light between consecutive pictures.
 fn steps(sky: &dyn Fn(f32) -> Scene) -> Vec<f64> {
@@ -18,10 +17,11 @@ fn steps(sky: &dyn Fn(f32) -> Scene) -> Vec<f64> {
         light_grid: 48,
         ..Quality::default()
     };
+    let frames = if thorough() { 60 } else { 40 };
     let mut renderer = renderer();
-    let pictures: Vec<Vec<u8>> = (0..=FRAMES)
+    let pictures: Vec<Vec<u8>> = (0..=frames)
         .map(|index| {
-            let scene = sky(index as f32 / FRAMES as f32);
+            let scene = sky(index as f32 / frames as f32);
             renderer.forget_history();
             render(&mut renderer, &frame(&scene, &quality, SIZE, Output::Display));
             renderer.display_rgba8().expect("it can be read").1
@@ -46,7 +46,7 @@ fn seamless(name: &str, sky: &dyn Fn(f32) -> Scene) {
         assert!(*step < 2.0 * beside + NOISE, "{name}: {step:.2} levels in frame {index}, beside at most {beside:.2}");
     }
     let greatest = steps.iter().copied().fold(0.0, f64::max);
-    println!("{name}: at most {greatest:.2} levels in one of {FRAMES} frames, {all:.1} in all");
+    println!("{name}: at most {greatest:.2} levels in one of {} frames, {all:.1} in all", steps.len());
 }
 
 fn builtin(name: &str) -> Scene {
