@@ -26,9 +26,6 @@
 @group(2) @binding(2) var<storage, read_write> counters: array<atomic<u32>>;
 #endif
 
-// No layer makes steps longer by as much.
-const LONGEST_SCALE: f32 = 100.0;
-
 struct Seen {
   light: vec3f,
   transmittance: f32,
@@ -69,16 +66,36 @@ fn key_light_near(p: vec3f, altitude: f32, distance_m: f32) -> vec3f {
 }
 #endif
 
-// As layers share a height they share the shortest step; between layers it is an ordinary one.
+fn usual_step(distance_m: f32) -> f32 {
+  return scene.step_m + scene.step_growth * distance_m;
+}
+
+// In clear air layers that share a height share the mean of their steps; between layers it is an ordinary one.
 fn step_at(distance_m: f32, altitude: f32) -> f32 {
-  var scale = LONGEST_SCALE;
+  var scales = 0.0;
+  var count = 0.0;
   for (var i = 0u; i < LAYERS; i++) {
     let layer = scene.layers[i];
     let h = (altitude - layer.base_m) * layer.per_thickness;
     // Rays begin on the layers' ends, but for rounding.
-    scale = min(scale, select(LONGEST_SCALE, layer.step_scale, abs(h - 0.5) < 0.51));
+    let is_here = abs(h - 0.5) < 0.51;
+    scales += select(0.0, layer.step_scale, is_here);
+    count += select(0.0, 1.0, is_here);
   }
-  return (scene.step_m + scene.step_growth * distance_m) * select(scale, 1.0, scale == LONGEST_SCALE);
+  return usual_step(distance_m) * select(scales / max(count, 1.0), 1.0, count == 0.0);
+}
+
+// In cloud each layer has a say in the step by its part in the extinction.
+fn step_in(distance_m: f32, densities: vec4f) -> f32 {
+  var scaled = 0.0;
+  var whole = 0.0;
+  for (var i = 0u; i < LAYERS; i++) {
+    let layer = scene.layers[i];
+    let extinction = densities[i] * layer.extinction_per_m;
+    scaled += extinction * layer.step_scale;
+    whole += extinction;
+  }
+  return usual_step(distance_m) * select(1.0, scaled / whole, whole > 1e-20);
 }
 
 // Detail is whole up to half the distance at which it has faded to its mean.
@@ -154,8 +171,20 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
 
 var<private> steps_left: u32;
 
+// The second half of a ray's steps is for whatever way is left, however long: each is at least this, so that the way they
+// cover grows with their number's fourth power, and the last one takes the rest. Else rays along a layer would see through
+// what they did not come to.
+fn least_step(way_left: f32) -> f32 {
+  let half = 0.5 * f32(scene.view_steps);
+  let taken = max(1.0 - f32(steps_left) / half, 0.0);
+  let cubed = taken * taken * taken;
+  return way_left * min(4.0 * cubed / (half * max(1.0 - cubed * taken, 1e-3)), 1.0);
+}
+
 // Shortest step that looks for a surface, relative to ordinary ones.
 const SURFACE_STEP: f32 = 0.1;
+// As few of them take all of the least step, be cloud as dense as it may.
+const LAST_STEPS: u32 = 8u;
 // And in ordinary optical depths: the light in cloud that is far denser than water is lies in its first centimetres.
 const SURFACE_DEPTH: f32 = 0.5;
 // Clear samples after which steps become longer.
@@ -169,7 +198,7 @@ const GROWTH_INSIDE: f32 = 1.5;
 // One stretch of the ray. Clear air is crossed as far as the map promises it, else in steps that are shorter near
 // surfaces; on meeting cloud half of the last step is taken back, and so on, until its surface is found; inside, steps grow
 // until they have equal optical depth, longer where little is left to see. An empty_stride of 1 makes all steps equal.
-fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, jitter: f32) -> Seen {
+fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, way_after: f32, jitter: f32) -> Seen {
   var seen = seen_before;
   let is_varied = scene.empty_stride > 1.0;
   // How much of the way before a sample counts as its own, so that even cloud absorbs what the whole stretch absorbs,
@@ -192,7 +221,8 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
     atomicAdd(&counters[1], 1u);
 #endif
     let p = origin + dir * t;
-    let step = step_at(t, altitude_of(p));
+    let least = select(0.0, least_step(segment.y - t + way_after), is_varied);
+    let step = max(step_at(t, altitude_of(p)), least);
     let fade = detail_fade(t);
     clearness = 1.0;
     sparse_extinction = NEAREST_DEPTH * scene.step_depth / step;
@@ -218,7 +248,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       // On average cloud begins half way through what was not seen.
       behind = 0.5 * unseen;
       t += advanced;
-    } else if (unseen > 1.5 * surface_step && extinction * step > 0.5 * scene.step_depth) {
+    } else if (steps_left >= LAST_STEPS && unseen > 1.5 * surface_step && extinction * step > 0.5 * scene.step_depth) {
       // Entered a dense cloud from clear air.
       met = t;
       unseen *= 0.5;
@@ -229,7 +259,9 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, j
       clear_samples = 0u;
       unseen = 0.0;
       let by_depth = max(scene.step_depth / (extinction * max(seen.transmittance, 0.15)), surface_step);
-      let wanted = min(min(step, by_depth), max(GROWTH_INSIDE * inside_step, surface_step));
+      let longest = max(step_in(t, densities), least);
+      let grown = min(min(longest, by_depth), max(GROWTH_INSIDE * inside_step, surface_step));
+      let wanted = select(grown, max(grown, least), steps_left < LAST_STEPS);
       inside_step = wanted;
       // A sample stands for the way half to its neighbours on both sides, the last one for all that is left.
       let length = behind + select(0.5 * wanted, segment.y - t, t + wanted >= segment.y);
@@ -278,10 +310,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     key_light_altitude = -1e9;
 #endif
     let first = vec2f(segments.first.x, min(segments.first.y, limit));
-    seen = march_segment(seen, origin, dir, first, jitter);
     let second = vec2f(segments.second.x, min(segments.second.y, limit));
+    seen = march_segment(seen, origin, dir, first, max(second.y - second.x, 0.0), jitter);
     if (second.y > second.x) {
-      seen = march_segment(seen, origin, dir, second, jitter);
+      seen = march_segment(seen, origin, dir, second, 0.0, jitter);
     }
     seen.light += light_of_waiting(origin, dir);
   }

@@ -37,6 +37,19 @@ fn a_homogeneous_slab_lets_through_what_beers_law_says_at_any_jitter() {
 }
 
 #[test]
+fn a_ray_that_runs_out_of_steps_sees_through_nothing() {
+    // Twenty steps of ten metres or two hundred, for a way of ten kilometres: even cloud absorbs along all of it.
+    for (step_m, view_steps) in [(10.0, 20), (10.0, 4), (200.0, 20), (10.0, 200)] {
+        let mut march = March::slab(THICKNESS_M, 2e-4, sloped(0.1, true));
+        (march.scene.step_m, march.scene.view_steps, march.scene.empty_stride) = (step_m, view_steps, 1.5);
+        march.jittered = true;
+        let expected = (-2.0_f64).exp();
+        let error = worst(march.run().rgba.iter().map(|texel| f64::from(texel[3]) - expected));
+        assert!(error < 2e-3, "{view_steps} steps of {step_m} m: off by {error:e} of {expected}");
+    }
+}
+
+#[test]
 fn shell_and_box_absorb_along_their_true_length() {
     let extinction = 4e-4_f32;
     for (domain, dir) in [

@@ -285,7 +285,7 @@ fn light_rounds(rounds: u32, view_steps: u32) -> u32 {
 }
 
 /// Extinction below which clouds are thin: fewer steps towards the light tell as much, down to half of them.
-const THIN_PER_M: f32 = 0.01;
+const THIN_PER_M: f32 = 0.015;
 
 /// Extinction of a layer where it is densest, in 1/m.
 fn greatest_extinction(layer: &CloudLayer) -> f32 {
@@ -294,7 +294,7 @@ fn greatest_extinction(layer: &CloudLayer) -> f32 {
 
 /// How many steps towards the light a layer takes, relative to a dense one.
 fn light_steps_share(layer: &CloudLayer) -> f32 {
-    (greatest_extinction(layer) / THIN_PER_M).powf(0.25).clamp(0.5, 1.0)
+    (greatest_extinction(layer) / THIN_PER_M).sqrt().clamp(0.5, 1.0)
 }
 
 /// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many, and
@@ -314,19 +314,30 @@ const USUAL_THICKNESS_M: f32 = 1200.0;
 const LONGEST_IN_THICK: f32 = 2.05;
 /// And how many times as long in the thinnest layer.
 const SHORTEST_IN_THIN_LAYERS: f32 = 0.85;
+/// Way over which the density of a soft layer changes, from which on steps are longer, and at most by how much.
+const USUAL_SLOPE_M: f32 = 3000.0;
+const LONGEST_IN_SOFT: f32 = 1.6;
+/// Optical depth of a layer about which that begins: of a thin one all is seen.
+const THICK_DEPTH: f32 = 4.0;
 /// Extinction down to which they are, and how many times as long they are in the thinnest cloud.
 const USUAL_EXTINCTION_PER_M: f32 = 0.001;
 const LONGEST_IN_THIN: f32 = 1.15;
 
 /// Length of the steps along a ray in a layer relative to what the quality says: tall clouds are broad as well, and seen
-/// from far away, and a step through thin cloud sees little of it. Where all steps are to be equal, they are as told.
+/// from far away; soft sheets of large shapes change slowly; and a step through thin cloud sees little of it. Where all
+/// steps are to be equal, they are as told.
 fn step_scale(layer: &CloudLayer, quality: &Quality) -> f32 {
     // A layer is as thick as its shapes need room, however small they are.
     let is_of_shapes = layer.model == DensityModel::Shapes;
     let thickness_m = if is_of_shapes { USUAL_THICKNESS_M } else { layer.top_m - layer.base_m };
     let by_thickness = (thickness_m / USUAL_THICKNESS_M).sqrt().clamp(SHORTEST_IN_THIN_LAYERS, LONGEST_IN_THICK);
     let by_extinction = (USUAL_EXTINCTION_PER_M / greatest_extinction(layer)).powf(0.25).clamp(1.0, LONGEST_IN_THIN);
-    if quality.empty_stride > 1.0 { by_thickness * by_extinction } else { 1.0 }
+    let slope_m = layer.edge_softness * layer.shape_size_m / layer.shape_strength.max(1e-3);
+    let is_profile = layer.model == DensityModel::Profile;
+    let depth = greatest_extinction(layer) * thickness_m;
+    let by_slope = if is_profile { (slope_m / USUAL_SLOPE_M).clamp(1.0, LONGEST_IN_SOFT) } else { 1.0 };
+    let by_slope = by_slope.powf(1.0 - (-depth / THICK_DEPTH).exp());
+    if quality.empty_stride > 1.0 { by_thickness * by_slope * by_extinction } else { 1.0 }
 }
 
 /// Radiance of the sky where the light is plain.
