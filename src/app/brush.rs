@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec2, Vec3};
 
 use crate::render::uniforms::map_place;
-use crate::scene::{CloudLayer, FlowKind, MAX_DABS, MAX_LAYERS, MapEdge, MapLayer, MapSource, Scene, Stroke};
+use crate::scene::{Brush, CloudLayer, FlowKind, MAX_DABS, MAX_LAYERS, MapEdge, MapLayer, MapSource, Scene, Stroke};
 use crate::ui::PaintState;
 
 /// Dabs lie so many radii apart.
@@ -82,7 +82,9 @@ impl UnderWay {
         }
         let map = maps.len() - 1;
         let count = maps[map].strokes.0.len() + 1;
-        let strength = 1.0 - (1.0 - brush.strength.clamp(0.0, 1.0)).powf(SPACING as f32);
+        // One pass goes so far, but what is moved follows each dab.
+        let passes = if brush.brush == Brush::Move { 1.0 } else { SPACING as f32 };
+        let strength = 1.0 - (1.0 - brush.strength.clamp(0.0, 1.0)).powf(passes);
         let stroke = Stroke {
             brush: brush.brush,
             kind: brush.kind,
@@ -219,7 +221,7 @@ fn drawn(map: &mut MapLayer, (begin, way): (DVec2, DVec2), (size_m, time_secs): 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Brush, DensityModel};
+    use crate::scene::DensityModel;
 
     #[test]
     fn a_flow_carries_cloud_from_where_it_begins_to_where_it_ends() {

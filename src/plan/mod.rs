@@ -78,6 +78,8 @@ pub struct MapLayers {
     pub grown: bool,
     /// Some that flow.
     pub flow: bool,
+    /// Some that the brush has moved or smoothed.
+    pub reworked: bool,
 }
 
 impl MapLayers {
@@ -88,6 +90,8 @@ impl MapLayers {
         let maps = &maps[first..];
         let any = |source: MapSource| maps.iter().any(|map| map.source == source);
         let flows = |map: &MapLayer| map.source == MapSource::Flow && map.flow_mps * map.opacity != 0.0;
+        let reworks = |map: &MapLayer| map.strokes.0.iter().any(|stroke| stroke.brush.reworks());
+        let is_reworked = |map: &MapLayer| map.source == MapSource::Painted && reworks(map);
         let unread = (!is_read, Need::Impossible, "no layer is placed by the map");
         let no_image = (!any(MapSource::Grown), Need::Impossible, "no layer of the map grows");
         let no_flow = (!any(MapSource::Flow), Need::Impossible, "no layer of the map flows");
@@ -96,6 +100,7 @@ impl MapLayers {
             joined: maps.len() > 1,
             grown: why.unless(Effect::GrowingMap, &[unread, no_image], "a layer of the map grows"),
             flow: why.unless(Effect::Flows, &[unread, no_flow, stands], "they carry the map"),
+            reworked: is_read && maps.iter().any(is_reworked),
         }
     }
 }

@@ -1,4 +1,7 @@
 //! Painted layers of the weather map: their strokes, drawn as far as they are not there yet.
+//!
+//! Most dabs change each texel by itself. Those that move or smooth take from other texels, so some of them at a time work on
+//! what was there before: a stroke that grows goes back to that, and is the same at the end as one drawn at once.
 
 use glam::{IVec2, UVec2, Vec2, Vec4};
 use wgpu::util::DeviceExt as _;
@@ -11,6 +14,12 @@ use crate::scene::{Brush, CloudKind, Stroke, Strokes};
 
 /// Dabs that one job draws: it goes through all of them at each texel that any of them reaches.
 const MOST_AT_ONCE: usize = 256;
+/// Dabs that move or smooth what was there before all of them.
+const MOVED_AT_ONCE: usize = 64;
+/// How much one dab draws its surroundings apart or together.
+const GROWTH: f32 = 0.08;
+/// Bytes of a texel of a painted layer.
+const TEXEL_BYTES: u64 = 48;
 
 /// One painted layer.
 #[derive(Debug)]
@@ -20,17 +29,24 @@ pub(super) struct Painting {
     /// Whether what crosses the map's edge goes on at the other side.
     repeats: bool,
     buffer: wgpu::Buffer,
+    /// What was painted before the last dabs that move or smooth: which stroke's, and the first of them.
+    kept: Option<((usize, usize), wgpu::Buffer)>,
 }
 
 impl Painting {
     /// A layer of so many texels across, without paint.
     pub(super) fn new(gpu: &Gpu, side: u32) -> Self {
-        Self { side, applied: Strokes::default(), repeats: true, buffer: clear(gpu, side) }
+        Self { side, applied: Strokes::default(), repeats: true, buffer: clear(gpu, side), kept: None }
     }
 
     /// What was painted.
     pub(super) fn buffer(&self) -> &wgpu::Buffer {
         &self.buffer
+    }
+
+    /// Device memory in bytes.
+    pub(super) fn bytes(&self) -> u64 {
+        self.buffer.size() + self.kept.as_ref().map_or(0, |(_, buffer)| buffer.size())
     }
 
     /// Appends the jobs that draw the strokes. What was only added to is drawn on; all is drawn anew where a stroke is gone.
@@ -48,7 +64,7 @@ impl Painting {
         // The stroke under the brush grows.
         let drawn = match (rest, wanted) {
             ([], _) => Some(0),
-            ([old], [new, ..]) => grown_from(old, new),
+            ([old], [new, ..]) => grown_from(old, new).filter(|drawn| self.can_go_on(same, new, *drawn)),
             _ => None,
         };
         let (first, drawn) = match drawn {
@@ -60,7 +76,15 @@ impl Painting {
         };
         for (index, stroke) in strokes.0.iter().enumerate().skip(first) {
             let drawn = if index == first { drawn } else { 0 };
-            self.draw(context, stroke, drawn, jobs)?;
+            if stroke.brush.reworks() {
+                self.draw_from_before(context, (index, stroke), drawn, jobs)?;
+            } else {
+                self.draw(context, stroke, drawn, jobs)?;
+            }
+        }
+        // Only a stroke that may grow needs what was before.
+        if !strokes.0.last().is_some_and(|stroke| stroke.brush.reworks()) {
+            self.kept = None;
         }
         self.applied = strokes.clone();
         Ok(())
@@ -76,6 +100,66 @@ impl Painting {
         context: &Context<'_>,
         stroke: &Stroke,
         dabs: &[[f32; 2]],
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), GpuError> {
+        self.dispatch(context, (dabs_key(), stroke), (dabs, None), jobs)
+    }
+
+    /// Whether what is there of a stroke can be drawn on.
+    fn can_go_on(&self, index: usize, stroke: &Stroke, drawn: usize) -> bool {
+        let first = drawn - drawn % MOVED_AT_ONCE;
+        let is_kept = || self.kept.as_ref().is_some_and(|(of, _)| *of == (index, first));
+        !stroke.brush.reworks() || first == drawn || is_kept()
+    }
+
+    /// Draws a stroke that moves or smooths from one of its dabs on: those that are done together anew.
+    fn draw_from_before(
+        &mut self,
+        context: &Context<'_>,
+        (index, stroke): (usize, &Stroke),
+        drawn: usize,
+        jobs: &mut Vec<Job>,
+    ) -> Result<(), GpuError> {
+        let begun = drawn - drawn % MOVED_AT_ONCE;
+        for first in (begun..stroke.dabs.len()).step_by(MOVED_AT_ONCE) {
+            let kept = match self.kept.take() {
+                Some((of, kept)) if of == (index, first) => kept,
+                other => {
+                    let kept = other.map_or_else(|| clear(context.gpu, self.side), |(_, kept)| kept);
+                    self.keep(context, &kept, jobs)?;
+                    kept
+                }
+            };
+            let last = (first + MOVED_AT_ONCE).min(stroke.dabs.len());
+            // The place before the first of them is where it came from.
+            let mut dabs = vec![stroke.dabs[first.saturating_sub(1)]];
+            dabs.extend(&stroke.dabs[first..last]);
+            let key = ProgramKey::plain(if stroke.brush == Brush::Smooth { SMOOTH } else { WARP });
+            self.dispatch(context, (key, stroke), (&dabs, Some(&kept)), jobs)?;
+            self.kept = Some(((index, first), kept));
+        }
+        Ok(())
+    }
+
+    /// Keeps what is painted.
+    fn keep(&self, context: &Context<'_>, kept: &wgpu::Buffer, jobs: &mut Vec<Job>) -> Result<(), GpuError> {
+        let uniforms = PaintUniforms { side: self.side, ..bytemuck::Zeroable::zeroed() };
+        let paint = context.gpu.uniform("paint", bytemuck::bytes_of(&uniforms));
+        let bound = vec![
+            ("paint", paint.as_entire_binding()),
+            ("painted", self.buffer.as_entire_binding()),
+            ("kept", kept.as_entire_binding()),
+        ];
+        jobs.push(context.whole("paint", &ProgramKey::plain(KEEP), &bound, Extent::image([self.side; 2]))?);
+        Ok(())
+    }
+
+    /// Draws dabs of a stroke by a program, with what was there before if it takes from that.
+    fn dispatch(
+        &self,
+        context: &Context<'_>,
+        (key, stroke): (ProgramKey, &Stroke),
+        (dabs, kept): (&[[f32; 2]], Option<&wgpu::Buffer>),
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
         let side = self.side as f32;
@@ -96,12 +180,13 @@ impl Painting {
             contents: bytemuck::cast_slice(&dabs),
             usage: wgpu::BufferUsages::STORAGE,
         });
-        let bound = vec![
+        let mut bound = vec![
             ("paint", paint.as_entire_binding()),
             ("dabs", places.as_entire_binding()),
             ("painted", self.buffer.as_entire_binding()),
         ];
-        jobs.push(context.whole("paint", &dabs_key(), &bound, Extent::image(uniforms.extent.to_array()))?);
+        bound.extend(kept.map(|kept| ("kept", kept.as_entire_binding())));
+        jobs.push(context.whole("paint", &key, &bound, Extent::image(uniforms.extent.to_array()))?);
         Ok(())
     }
 }
@@ -116,7 +201,7 @@ fn grown_from(old: &Stroke, new: &Stroke) -> Option<usize> {
 fn clear(gpu: &Gpu, side: u32) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some("painted"),
-        size: u64::from(side) * u64::from(side) * 32,
+        size: u64::from(side) * u64::from(side) * TEXEL_BYTES,
         usage: wgpu::BufferUsages::STORAGE,
         mapped_at_creation: false,
     })
@@ -132,6 +217,7 @@ fn uniforms(stroke: &Stroke, (first, extent): (IVec2, UVec2), (count, side): (us
     let (goal, reaches) = match stroke.brush {
         Brush::Add => (kind * stroke.amount, Vec2::X),
         Brush::Erase | Brush::Restore => (Vec4::ZERO, Vec2::X),
+        Brush::Move | Brush::Grow | Brush::Shrink | Brush::Smooth => (Vec4::ZERO, Vec2::ZERO),
         Brush::Raise => (Vec4::W, Vec2::Y),
         Brush::Lower => (Vec4::ZERO, Vec2::Y),
     };
@@ -147,11 +233,19 @@ fn uniforms(stroke: &Stroke, (first, extent): (IVec2, UVec2), (count, side): (us
         side,
         restores: u32::from(stroke.brush == Brush::Restore),
         repeats: 1,
-        pad0: 0,
+        grows: match stroke.brush {
+            Brush::Grow => GROWTH,
+            Brush::Shrink => -GROWTH,
+            _ => 0.0,
+        },
         pad1: 0,
         pad2: 0,
     }
 }
+
+const WARP: &str = "pass/paint_warp.wgsl";
+const SMOOTH: &str = "pass/paint_smooth.wgsl";
+const KEEP: &str = "pass/paint_keep.wgsl";
 
 fn dabs_key() -> ProgramKey {
     ProgramKey::plain("pass/paint_dabs.wgsl")
@@ -164,5 +258,7 @@ pub(super) fn blend_key(has_below: bool) -> ProgramKey {
 
 /// The programs that make what a plan calls for.
 pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
-    if plan.runs(Effect::Painting) { vec![dabs_key(), blend_key(true), blend_key(false)] } else { Vec::new() }
+    let draws = plan.runs(Effect::Painting).then(|| [dabs_key(), blend_key(true), blend_key(false)]);
+    let reworks = plan.map_layers.reworked.then(|| [WARP, SMOOTH, KEEP].map(ProgramKey::plain));
+    draws.into_iter().flatten().chain(reworks.into_iter().flatten()).collect()
 }

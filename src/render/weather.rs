@@ -220,7 +220,7 @@ impl WeatherMap {
             let (Some(before), Some(after)) = (find(before), find(after)) else {
                 continue;
             };
-            let blend = BlendUniforms { share: *share, mode: blend_index(*mode), opacity: *opacity, pad2: 0.0 };
+            let blend = BlendUniforms { share: *share, mode: blend_index(*mode), opacity: *opacity, repeats: 0 };
             let buffer = context.gpu.uniform("blend", bytemuck::bytes_of(&blend));
             let mut bound: Bound<'_> = vec![
                 ("blend", buffer.as_entire_binding()),
@@ -249,7 +249,7 @@ impl WeatherMap {
     ) -> Result<(), GpuError> {
         let painting = self.paintings.entry(index).or_insert_with(|| Painting::new(context.gpu, SIDE));
         painting.update(context, (strokes, repeats), jobs)?;
-        let blend = BlendUniforms { share: 0.0, mode: 0, opacity, pad2: 0.0 };
+        let blend = BlendUniforms { share: 0.0, mode: 0, opacity, repeats: repeats.into() };
         let buffer = context.gpu.uniform("blend", bytemuck::bytes_of(&blend));
         let below = index.checked_sub(1).map(|below| &self.joined[below].view);
         let mut bound: Bound<'_> = vec![
@@ -296,7 +296,7 @@ impl WeatherMap {
     /// Device memory in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let states = self.states.iter().map(|state| &state.texture);
-        let painted = self.paintings.values().map(|painting| painting.buffer().size()).sum::<u64>();
+        let painted = self.paintings.values().map(Painting::bytes).sum::<u64>();
         let textures = states.chain(&self.joined).chain(self.bounds.iter().map(|(_, bound)| bound));
         let examples = self.examples.iter().map(Example::bytes).sum::<u64>();
         painted + examples + textures.map(Texture::bytes).sum::<u64>()

@@ -24,8 +24,23 @@ choices! {
         Raise ("Raise tops"),
         /// Lets tops sink.
         Lower ("Lower tops"),
+        /// Moves clouds along with the brush.
+        Move ("Move clouds"),
+        /// Draws clouds apart about the brush: they grow.
+        Grow ("Let clouds grow"),
+        /// Draws clouds together about the brush: they shrink.
+        Shrink ("Let clouds shrink"),
+        /// Smooths the clouds' outlines.
+        Smooth ("Smooth"),
         /// Takes painting away: what lies below comes back.
         Restore ("Take paint away"),
+    }
+}
+
+impl Brush {
+    /// Whether it takes from around each place what was there before, instead of changing each place by itself.
+    pub fn reworks(self) -> bool {
+        matches!(self, Self::Move | Self::Grow | Self::Shrink | Self::Smooth)
     }
 }
 
@@ -177,7 +192,7 @@ mod tests {
     #[test]
     fn nonsense_is_told_in_words() {
         let errors = [
-            ("", "\"\" is none of Add, Erase, Raise, Lower, Restore"),
+            ("", "\"\" is none of Add, Erase, Raise, Lower, Move, Grow, Shrink, Smooth, Restore"),
             ("Add Cirrus", "\"Cirrus\" is none of Cumulus, Stratus, Stratocumulus"),
             ("Add Cumulus radius 0", "radius 0 is outside 0.0001 ..= 0.5"),
             ("Add Cumulus radius x", "radius x is no number"),

@@ -29,12 +29,15 @@ fn renderer() -> Renderer {
     Renderer::new(gpu()).expect("it fits")
 }
 
-fn any_stroke(random: &mut Random) -> Stroke {
-    let brushes = [Brush::Add, Brush::Erase, Brush::Raise, Brush::Lower, Brush::Restore];
+/// Brushes that change each place by itself, and those that take from around it.
+const BY_PLACE: [Brush; 5] = [Brush::Add, Brush::Erase, Brush::Raise, Brush::Lower, Brush::Restore];
+const FROM_AROUND: [Brush; 4] = [Brush::Move, Brush::Grow, Brush::Shrink, Brush::Smooth];
+
+fn any_stroke(random: &mut Random, brushes: &[Brush]) -> Stroke {
     let kinds = [CloudKind::Cumulus, CloudKind::Stratus, CloudKind::Stratocumulus];
     let mut at = |low, high| random.between(low, high);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
-    let [brush, kind] = [at(0.0, 4.99) as usize, at(0.0, 2.99) as usize];
+    let [brush, kind] = [at(0.0, brushes.len() as f32 - 0.01) as usize, at(0.0, 2.99) as usize];
     // Some lie beyond the edge of the map, which repeats.
     let (start, step) = ([at(-0.5, 1.5), at(-0.5, 1.5)], [at(-0.05, 0.05), at(-0.05, 0.05)]);
     let dabs = (0..8).map(|i| [start[0] + step[0] * i as f32, start[1] + step[1] * i as f32]).collect();
@@ -80,6 +83,7 @@ fn by_hand(strokes: &[Stroke], below: &dyn Fn(usize) -> [f32; 4]) -> Vec<[f32; 4
                         taken = taken.map(|value| value * (1.0 - share));
                         continue;
                     }
+                    Brush::Move | Brush::Grow | Brush::Shrink | Brush::Smooth => unreachable!("they are not drawn"),
                 };
                 for channel in 0..4 {
                     let reach = reach[usize::from(channel == 3)];
@@ -102,7 +106,7 @@ fn by_hand(strokes: &[Stroke], below: &dyn Fn(usize) -> [f32; 4]) -> Vec<[f32; 4
 fn strokes_are_what_their_dabs_say_and_repeat_with_the_map() {
     let mut random = Random::new(71);
     for over_generated in [false, true] {
-        let strokes: Vec<Stroke> = (0..7).map(|_| any_stroke(&mut random)).collect();
+        let strokes: Vec<Stroke> = (0..7).map(|_| any_stroke(&mut random, &BY_PLACE)).collect();
         let bare = map(&mut renderer(), &sky(Vec::new(), over_generated));
         let painted = map(&mut renderer(), &sky(strokes.clone(), over_generated));
         let expected = by_hand(&strokes, &|index| bare.rgba[index]);
@@ -119,7 +123,10 @@ fn strokes_are_what_their_dabs_say_and_repeat_with_the_map() {
 #[test]
 fn a_stroke_that_is_taken_back_leaves_nothing_and_one_that_grows_is_one() {
     let mut random = Random::new(72);
-    let strokes: Vec<Stroke> = (0..5).map(|_| any_stroke(&mut random)).collect();
+    let all = [BY_PLACE.as_slice(), &FROM_AROUND].concat();
+    let mut strokes: Vec<Stroke> = (0..5).map(|_| any_stroke(&mut random, &all)).collect();
+    // Whatever is drawn, some of it moves what was there.
+    (strokes[1].brush, strokes[3].brush) = (Brush::Move, Brush::Smooth);
     let (mut kept, mut other) = (renderer(), renderer());
     let mut afresh = |strokes: &[Stroke]| {
         other.forget_everything().expect("nothing is under way");
@@ -142,6 +149,92 @@ fn a_stroke_that_is_taken_back_leaves_nothing_and_one_that_grows_is_one() {
     changed[1].radius *= 0.5;
     let drawn_anew = afresh(&changed);
     assert!(map(&mut kept, &sky(changed, true)) == drawn_anew, "it is drawn anew");
+}
+
+/// A stroke to the east, so many texels from dab to dab.
+fn eastwards(brush: Brush, count: u8, spacing: f32) -> Stroke {
+    let dabs = (0..count).map(|i| [0.4 + spacing * f32::from(i) / 512.0, 0.5]).collect();
+    Stroke { brush, kind: CloudKind::Cumulus, radius: 0.1, strength: 1.0, softness: 0.5, amount: 1.0, dabs }
+}
+
+/// Places of a map's texels by their distance from a place, in edges of the map.
+fn within(centre: [f32; 2], radius: f32) -> impl Iterator<Item = usize> {
+    let distance = move |index: usize| {
+        let at = [(index % 512) as f32 + 0.5, (index / 512) as f32 + 0.5];
+        (at[0] / 512.0 - centre[0]).hypot(at[1] / 512.0 - centre[1])
+    };
+    (0..512 * 512).filter(move |index| distance(*index) < radius)
+}
+
+#[test]
+fn what_a_stroke_moves_is_where_it_ends_and_the_rest_where_it_was() {
+    let mut renderer = renderer();
+    let bare = map(&mut renderer, &sky(Vec::new(), true));
+    let moved = map(&mut renderer, &sky(vec![eastwards(Brush::Move, 9, 8.0)], true));
+    // Its inner half has no falloff.
+    for index in within([0.4 + 64.0 / 512.0, 0.5], 0.045) {
+        for (seen, expected) in moved.rgba[index].iter().zip(bare.rgba[index - 64]) {
+            assert!((seen - expected).abs() < 2e-3, "texel {index}: {seen}, {expected} where it came from");
+        }
+    }
+    let touched: Vec<usize> = (0..=8_u8).flat_map(|i| within([0.4 + f32::from(i) / 64.0, 0.5], 0.101)).collect();
+    let touched = std::collections::BTreeSet::from_iter(touched);
+    let changed = (0..512 * 512).filter(|index| moved.rgba[*index] != bare.rgba[*index]);
+    let (inside, outside): (Vec<usize>, Vec<usize>) = changed.partition(|index| touched.contains(index));
+    assert!(inside.len() > 2000 && outside.is_empty(), "{} and {}", inside.len(), outside.len());
+    // What was painted goes along.
+    let dot = Stroke { radius: 0.01, ..eastwards(Brush::Add, 1, 0.0) };
+    let carried = map(&mut renderer, &sky(vec![dot, eastwards(Brush::Move, 9, 8.0)], false));
+    let cloud = |east: f32| within([east, 0.5], 0.02).map(|index| carried.rgba[index][0]).sum::<f32>();
+    assert!(cloud(0.4) < 1e-3 && cloud(0.4 + 64.0 / 512.0) > 20.0, "{}, {}", cloud(0.4), cloud(0.4 + 64.0 / 512.0));
+}
+
+#[test]
+fn strokes_that_move_are_the_same_however_they_grew_and_leave_nothing() {
+    let (mut kept, mut other) = (renderer(), renderer());
+    let bare = map(&mut kept, &sky(Vec::new(), true));
+    for brush in [Brush::Move, Brush::Smooth] {
+        let whole = eastwards(brush, 150, 0.7);
+        let first = eastwards(Brush::Add, 3, 9.0);
+        for count in [20, 64, 65, 150] {
+            let part = Stroke { dabs: whole.dabs[..count].to_vec(), ..whole.clone() };
+            let grown = map(&mut kept, &sky(vec![first.clone(), part.clone()], true));
+            other.forget_everything().expect("nothing is under way");
+            let fresh = map(&mut other, &sky(vec![first.clone(), part], true));
+            assert!(grown == fresh, "{brush:?}: {count} dabs are not what they are at once");
+        }
+        assert!(map(&mut kept, &sky(Vec::new(), true)) == bare, "{brush:?} left something behind");
+    }
+}
+
+#[test]
+fn clouds_grow_shrink_and_are_smoothed_under_the_brush() {
+    let mut renderer = renderer();
+    let dot = Stroke { radius: 0.03, softness: 0.1, ..eastwards(Brush::Add, 1, 0.0) };
+    let mut of = |brush: Brush, count: u8| {
+        let strokes = vec![dot.clone(), eastwards(brush, count, 0.0)];
+        let map = map(&mut renderer, &sky(strokes, false));
+        let cloud: f32 = map.rgba.iter().map(|texel| texel[0]).sum();
+        let steepest = within([0.4, 0.5], 0.1).map(|index| (map.rgba[index][0] - map.rgba[index + 1][0]).abs());
+        (cloud, steepest.fold(0.0, f32::max))
+    };
+    let ((plain, edge), (grown, _), (shrunk, _)) = (of(Brush::Move, 1), of(Brush::Grow, 4), of(Brush::Shrink, 4));
+    // In its middle four dabs draw apart by 1 / 0.92 each.
+    let wanted = 0.92_f32.powi(-8);
+    assert!((grown / plain / wanted - 1.0).abs() < 0.05, "{} of {wanted}", grown / plain);
+    assert!((shrunk / plain / 1.08_f32.powi(-8) - 1.0).abs() < 0.05, "{}", shrunk / plain);
+    let (smoothed, soft_edge) = of(Brush::Smooth, 1);
+    // Where the brush fades less of what is spread arrives.
+    assert!((0.9..1.02).contains(&(smoothed / plain)), "{}", smoothed / plain);
+    assert!(soft_edge < 0.5 * edge, "{soft_edge} of {edge}");
+    // The map below is smoothed as well.
+    let mut roughness = |strokes| {
+        let map = map(&mut renderer, &sky(strokes, true));
+        let apart = |index: usize| (map.rgba[index][0] - map.rgba[index + 4][0]).powi(2);
+        within([0.4, 0.5], 0.045).map(apart).sum::<f32>()
+    };
+    let (rough, smooth) = (roughness(Vec::new()), roughness(vec![eastwards(Brush::Smooth, 1, 0.0)]));
+    assert!(smooth < 0.6 * rough, "{smooth} of {rough}");
 }
 
 #[test]

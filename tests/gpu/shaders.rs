@@ -27,8 +27,9 @@ fn every_function_file_and_test_shader_is_valid() {
 
 /// A painted layer of the map.
 fn painted() -> MapLayer {
-    let stroke = "Add Cumulus radius 0.1 strength 1 softness 1 amount 1 at 0.5,0.5".parse().expect("a stroke");
-    let strokes = Strokes(vec![std::sync::Arc::new(stroke)]);
+    let stroke = |brush| format!("{brush} Cumulus radius 0.1 strength 1 softness 1 amount 1 at 0.5,0.5").parse();
+    let strokes = ["Add", "Smooth"].map(|brush| std::sync::Arc::new(stroke(brush).expect("a stroke")));
+    let strokes = Strokes(strokes.to_vec());
     MapLayer { source: MapSource::Painted, strokes, ..MapLayer::default() }
 }
 

@@ -189,8 +189,8 @@ gpu_struct! {
         pub restores: u32,
         /// 1 if the map repeats.
         pub repeats: u32,
-        /// Keeps the size a multiple of 16 bytes.
-        pub pad0: u32,
+        /// How much a dab draws its surroundings apart, or together where negative; 0 moves them along the stroke.
+        pub grows: f32,
         /// Keeps the size a multiple of 16 bytes.
         pub pad1: u32,
         /// Keeps the size a multiple of 16 bytes.
@@ -245,8 +245,8 @@ gpu_struct! {
         pub mode: u32,
         /// How much of it counts.
         pub opacity: f32,
-        /// Keeps the size a multiple of 16 bytes.
-        pub pad2: f32,
+        /// 1 if the map repeats.
+        pub repeats: u32,
     }
 
     /// What the relief is made of.

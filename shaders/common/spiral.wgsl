@@ -1,0 +1,11 @@
+// Points that are spread in the plane as a normal distribution is: on a spiral by the golden angle (Vogel 1979), each as far
+// out as its quantile. Their mean square along either axis is about 1.
+
+const SPIRAL_COUNT: u32 = 48u;
+const GOLDEN_ANGLE: f32 = 2.3999632;
+
+fn spiral(i: u32) -> vec2f {
+  let quantile = (f32(i) + 0.5) / f32(SPIRAL_COUNT);
+  let angle = f32(i) * GOLDEN_ANGLE;
+  return sqrt(-2.0 * log(1.0 - quantile)) * vec2f(cos(angle), sin(angle));
+}
