@@ -70,7 +70,7 @@ fn usual_step(distance_m: f32) -> f32 {
   return scene.step_m + scene.step_growth * distance_m;
 }
 
-// In clear air layers that share a height share the mean of their steps; between layers it is an ordinary one.
+// An ordinary step at a height: layers that share it share the mean of theirs, as what they hold there is not known yet.
 fn step_at(distance_m: f32, altitude: f32) -> f32 {
   var scales = 0.0;
   var count = 0.0;
@@ -171,20 +171,20 @@ fn light_of_waiting(origin: vec3f, dir: vec3f) -> vec3f {
 
 var<private> steps_left: u32;
 
-// The second half of a ray's steps is for whatever way is left, however long: each is at least this, so that the way they
-// cover grows with their number's fourth power, and the last one takes the rest. Else rays along a layer would see through
-// what they did not come to.
-fn least_step(way_left: f32) -> f32 {
+// Rays along a layer must not see through what they have no steps left for, so the second half of their steps is for
+// whatever way is left, however long: ordinary steps are at least this, by which the way they cover grows with their
+// number's fourth power. Few of them are so long where cloud is dense or broken; the last ones are, and share what is left.
+const LAST_STEPS: u32 = 8u;
+
+fn least_step(way_left: f32, steps: u32) -> f32 {
   let half = 0.5 * f32(scene.view_steps);
-  let taken = max(1.0 - f32(steps_left) / half, 0.0);
+  let taken = max(1.0 - f32(steps) / half, 0.0);
   let cubed = taken * taken * taken;
   return way_left * min(4.0 * cubed / (half * max(1.0 - cubed * taken, 1e-3)), 1.0);
 }
 
 // Shortest step that looks for a surface, relative to ordinary ones.
 const SURFACE_STEP: f32 = 0.1;
-// As few of them take all of the least step, be cloud as dense as it may.
-const LAST_STEPS: u32 = 8u;
 // And in ordinary optical depths: the light in cloud that is far denser than water is lies in its first centimetres.
 const SURFACE_DEPTH: f32 = 0.5;
 // Clear samples after which steps become longer.
@@ -212,7 +212,9 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, w
   // The nearest place that has cloud, where the surface is before it.
   var met = 0.0;
   var clear_samples = CLEAR_SAMPLES;
-  while (t < segment.y && steps_left > 0u && seen.transmittance > scene.early_exit) {
+  // One step is for what comes after.
+  let reserved = select(0u, 1u, is_varied && way_after > 0.0 && steps_left > 1u);
+  while (t < segment.y && steps_left > reserved && seen.transmittance > scene.early_exit) {
     steps_left -= 1u;
     if (waiting_count == WAITING || steps_left % WAITING == 0u) {
       seen.light += light_of_waiting(origin, dir);
@@ -221,7 +223,9 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, w
     atomicAdd(&counters[1], 1u);
 #endif
     let p = origin + dir * t;
-    let least = select(0.0, least_step(segment.y - t + way_after), is_varied);
+    let steps = steps_left - reserved;
+    let least = select(0.0, least_step(segment.y - t + way_after, steps), is_varied);
+    let takes_least = is_varied && steps < LAST_STEPS;
     let step = max(step_at(t, altitude_of(p)), least);
     let fade = detail_fade(t);
     clearness = 1.0;
@@ -236,7 +240,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, w
       inside_step = 0.0;
       clear_samples += 1u;
       let stride = select(1.0, scene.empty_stride, clear_samples > CLEAR_SAMPLES);
-      let near = step * select(1.0, stride * clearness, is_varied);
+      let near = max(step * select(1.0, stride * clearness, is_varied), select(0.0, least, takes_least));
       var ahead = near;
       if (is_varied && clear_way > near) {
         // Where the map promises clear air, all of that way and a share of a step there, or neighbours would go on in rows.
@@ -248,7 +252,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, w
       // On average cloud begins half way through what was not seen.
       behind = 0.5 * unseen;
       t += advanced;
-    } else if (steps_left >= LAST_STEPS && unseen > 1.5 * surface_step && extinction * step > 0.5 * scene.step_depth) {
+    } else if (!takes_least && unseen > 1.5 * surface_step && extinction * step > 0.5 * scene.step_depth) {
       // Entered a dense cloud from clear air.
       met = t;
       unseen *= 0.5;
@@ -261,7 +265,7 @@ fn march_segment(seen_before: Seen, origin: vec3f, dir: vec3f, segment: vec2f, w
       let by_depth = max(scene.step_depth / (extinction * max(seen.transmittance, 0.15)), surface_step);
       let longest = max(step_in(t, densities), least);
       let grown = min(min(longest, by_depth), max(GROWTH_INSIDE * inside_step, surface_step));
-      let wanted = select(grown, max(grown, least), steps_left < LAST_STEPS);
+      let wanted = max(grown, select(0.0, least, takes_least));
       inside_step = wanted;
       // A sample stands for the way half to its neighbours on both sides, the last one for all that is left.
       let length = behind + select(0.5 * wanted, segment.y - t, t + wanted >= segment.y);

@@ -7,9 +7,10 @@
 @group(1) @binding(2) var<storage, read> kept: array<Painted>;
 @group(2) @binding(0) var<storage, read_write> painted: array<Painted>;
 
-// One stroke smooths over so much of its radius, and all of them together over so many texels, at most.
+// The dabs of a call smooth over so much of their radius, and over no more than so many texels; the map below is not smoothed
+// over more by all strokes together.
 const WIDTH: f32 = 0.25;
-const WIDEST: f32 = 12.0;
+const WIDEST: f32 = 8.0;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -26,17 +27,17 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   var here = kept[index];
   let width = min(WIDTH * paint.radius * f32(paint.side), WIDEST) * (1.0 - rest);
   if (width > 0.0) {
-    let left = max(WIDEST * WIDEST - here.smoothing, 0.0);
     var sum = Painted();
     for (var i = 0u; i < SPIRAL_COUNT; i++) {
-      let near = kept[index_of(side, paint.repeats != 0u, texel + vec2i(round(spiral(i) * width)))];
+      let near = kept[index_of(side, paint.edge == REPEATS, texel + vec2i(round(spiral(i) * width)))];
       sum.added += near.added;
       sum.taken += near.taken;
       sum.shift += near.shift;
       sum.smoothing += near.smoothing;
     }
     let part = 1.0 / f32(SPIRAL_COUNT);
-    let smoothing = sum.smoothing * part + min(width * width, left);
+    let mean = sum.smoothing * part;
+    let smoothing = max(mean, min(mean + width * width, WIDEST * WIDEST));
     here = Painted(sum.added * part, sum.taken * part, sum.shift * part, smoothing, 0.0, 0.0, 0.0);
   }
   painted[index] = here;

@@ -29,7 +29,7 @@ fn kept_at(at: vec2f) -> Painted {
   let corner = floor(at - 0.5);
   let share = at - 0.5 - corner;
   let side = i32(paint.side);
-  let repeats = paint.repeats != 0u;
+  let repeats = paint.edge == REPEATS;
   var rows: array<Painted, 2>;
   for (var y = 0; y < 2; y++) {
     let left = kept[index_of(side, repeats, vec2i(corner) + vec2i(0, y))];
@@ -54,6 +54,11 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   let index = texel.y * side + texel.x;
   if (all(at == here)) {
     painted[index] = kept[index];
+  } else if (paint.edge == CLEAR && any(at != clamp(at, vec2f(0.0), vec2f(f32(paint.side))))) {
+    // From beyond a map that ends comes no cloud.
+    let before = kept[index];
+    let taken = vec2f(1.0, before.taken.y);
+    painted[index] = Painted(before.added * vec4f(0.0, 0.0, 0.0, 1.0), taken, vec2f(0.0), 0.0, 0.0, 0.0, 0.0);
   } else {
     var moved = kept_at(at);
     moved.shift += (at - here) / f32(paint.side);

@@ -15,10 +15,14 @@ struct Painted {
   pad2: f32,
 }
 
+// What lies beyond the map's edge: the map again, its outermost texels, or nothing.
+const REPEATS: u32 = 0u;
+const CLEAR: u32 = 2u;
+
 // A way between two places in texels; where the map repeats, the shortest.
 fn shortest(paint: PaintUniforms, way: vec2f) -> vec2f {
   let side = f32(paint.side);
-  return way - select(vec2f(0.0), round(way / side) * side, paint.repeats != 0u);
+  return way - select(vec2f(0.0), round(way / side) * side, paint.edge == REPEATS);
 }
 
 // How much of a dab there is so far from its middle, in texels.

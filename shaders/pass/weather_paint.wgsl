@@ -16,8 +16,10 @@ const USUAL_VARIATION: f32 = 0.6;
 #if BELOW
 fn texel_below(texel: vec2i) -> vec4f {
   let side = i32(textureDimensions(map_out).x);
-  let index = index_of(side, blend.repeats != 0u, texel);
-  return textureLoad(map_below, vec2i(index % side, index / side), 0);
+  let index = index_of(side, blend.edge == REPEATS, texel);
+  let there = textureLoad(map_below, vec2i(index % side, index / side), 0);
+  let is_nothing = blend.edge == CLEAR && any(texel != clamp(texel, vec2i(0), vec2i(side - 1)));
+  return there * select(vec4f(1.0), vec4f(0.0, 0.0, 0.0, 1.0), is_nothing);
 }
 
 // Between texels.

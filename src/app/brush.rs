@@ -47,17 +47,17 @@ pub(super) struct UnderWay {
 /// What is being made.
 #[derive(Clone, Debug)]
 enum Does {
-    /// A stroke, the last of so many: with another number it was taken back.
-    Stroke { count: usize },
+    /// A stroke, as it begins, and how many there are with it: with another number it was taken back, with none it has no dab yet.
+    Stroke { begun: Box<Stroke>, count: usize },
     /// A flow, as it was last drawn, and whether it is on the map: without a drag there is none.
     Flow { layer: Box<MapLayer>, is_laid: bool },
 }
 
 impl UnderWay {
-    /// Begins a stroke or a flow at a height in a scene. A stroke gets a painted layer on top of the map if there is none, a flow
-    /// always one of its own.
+    /// Begins a stroke or a flow at a height in a scene. With its first dab a stroke gets a painted layer on top of the map if there
+    /// is none, a flow always one of its own.
     #[allow(clippy::cast_possible_truncation, reason = "a constant below 1")]
-    pub(super) fn begin(scene: &mut Scene, height_m: Option<f32>, brush: &PaintState) -> Result<Self, BrushError> {
+    pub(super) fn begin(scene: &Scene, height_m: Option<f32>, brush: &PaintState) -> Result<Self, BrushError> {
         let layers: Vec<_> = scene.numbered_layers().filter(|(_, layer)| layer.reads_map()).collect();
         let at_height = |height: f32| layers.iter().find(|(_, layer)| (layer.base_m..=layer.top_m).contains(&height));
         let is_placed = scene.layers.iter().any(CloudLayer::reads_map);
@@ -65,27 +65,21 @@ impl UnderWay {
         let found = height_m.and_then(at_height).or(layers.first()).ok_or(none)?;
         let (layer, base_m, top_m) = (found.0, found.1.base_m, found.1.top_m);
         let scale_m = scene.weather.size_m * found.1.map_scale;
-        let maps = &mut scene.weather.layers;
+        let maps = &scene.weather.layers;
         let height = height_m.unwrap_or(base_m).clamp(base_m, top_m);
+        let is_painted = maps.last().is_some_and(|map| map.source == MapSource::Painted);
+        let map = if is_painted && !brush.stirs { maps.len() - 1 } else { maps.len() };
+        if map >= MAX_LAYERS {
+            return Err(BrushError::Full);
+        }
         if brush.stirs {
-            if maps.len() >= MAX_LAYERS {
-                return Err(BrushError::Full);
-            }
             let does = Does::Flow { layer: Box::new(flow(brush, scale_m)), is_laid: false };
-            return Ok(Self { height_m: height, layer, map: maps.len(), does, last: None });
+            return Ok(Self { height_m: height, layer, map, does, last: None });
         }
-        if maps.last().is_none_or(|map| map.source != MapSource::Painted) {
-            if maps.len() >= MAX_LAYERS {
-                return Err(BrushError::Full);
-            }
-            maps.push(MapLayer { source: MapSource::Painted, ..MapLayer::default() });
-        }
-        let map = maps.len() - 1;
-        let count = maps[map].strokes.0.len() + 1;
         // One pass goes so far, but what is moved follows each dab.
         let passes = if brush.brush == Brush::Move { 1.0 } else { SPACING as f32 };
         let strength = 1.0 - (1.0 - brush.strength.clamp(0.0, 1.0)).powf(passes);
-        let stroke = Stroke {
+        let begun = Box::new(Stroke {
             brush: brush.brush,
             kind: brush.kind,
             radius: (brush.radius_m / scale_m).clamp(1e-3, 0.5),
@@ -93,17 +87,16 @@ impl UnderWay {
             softness: brush.softness,
             amount: brush.amount,
             dabs: Vec::new(),
-        };
-        maps[map].strokes.0.push(Arc::new(stroke));
-        Ok(Self { height_m: height, layer, map, does: Does::Stroke { count }, last: None })
+        });
+        Ok(Self { height_m: height, layer, map, does: Does::Stroke { begun, count: 0 }, last: None })
     }
 
     /// The parameter that it edits, if it has edited any.
     pub(super) fn key(&self) -> Option<String> {
         let parameter = match self.does {
+            Does::Stroke { count: 0, .. } | Does::Flow { is_laid: false, .. } => return None,
             Does::Stroke { .. } => "strokes",
-            Does::Flow { is_laid: true, .. } => "flow_begun_secs",
-            Does::Flow { is_laid: false, .. } => return None,
+            Does::Flow { .. } => "flow_begun_secs",
         };
         Some(format!("weather.layers.{}.{parameter}", self.map))
     }
@@ -118,18 +111,24 @@ impl UnderWay {
         let place = map_place(scene, layer, [east, f64::from(self.height_m), south], time_secs);
         let is_endless = scene.weather.edge == MapEdge::Repeat;
         let is_on_map = is_endless || (place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all());
-        let count = match self.does {
-            Does::Stroke { count } => count,
+        if self.last.is_none() && !is_on_map {
+            return Ok(());
+        }
+        let maps = &mut scene.weather.layers;
+        let count = match &mut self.does {
             Does::Flow { .. } => {
-                if is_on_map || self.last.is_some() {
-                    self.stir(scene, place, time_secs);
-                }
+                self.stir(scene, place, time_secs);
                 return Ok(());
             }
+            Does::Stroke { begun, count: count @ 0 } => {
+                *count = lay(maps, self.map, begun)?;
+                *count
+            }
+            Does::Stroke { count, .. } => *count,
         };
-        let map = scene.weather.layers.get_mut(self.map);
         // Or it was taken back.
-        map.filter(|map| map.strokes.0.len() == count).map_or(Ok(()), |map| self.dabs(map, place, is_endless))
+        let map = maps.get_mut(self.map).filter(|map| map.strokes.0.len() == count);
+        map.map_or(Ok(()), |map| self.dabs(map, place, is_endless))
     }
 
     /// Draws a flow from where it began to a place.
@@ -192,6 +191,19 @@ impl UnderWay {
     }
 }
 
+/// Lays a stroke without dabs on a painted layer, which is made on top of the map if it is not there; how many strokes it has then.
+fn lay(maps: &mut Vec<MapLayer>, map: usize, begun: &Stroke) -> Result<usize, BrushError> {
+    if maps.get(map).is_some_and(|map| map.strokes.dabs() >= MAX_DABS) {
+        return Err(BrushError::Worn);
+    }
+    if maps.len() == map {
+        maps.push(MapLayer { source: MapSource::Painted, ..MapLayer::default() });
+    }
+    let Some(strokes) = maps.get_mut(map).map(|map| &mut map.strokes.0) else { return Ok(0) };
+    strokes.push(Arc::new(begun.clone()));
+    Ok(strokes.len())
+}
+
 /// A flow that is about to be drawn.
 fn flow(brush: &PaintState, scale_m: f32) -> MapLayer {
     let [slow, fast] = SPEEDS;
@@ -230,7 +242,7 @@ mod tests {
             // Whatever part of the map the layer shows.
             scene.layers[0].map_scale = 0.5;
             let brush = PaintState { stirs: true, flow, radius_m: 2400.0, strength: 0.5, ..PaintState::default() };
-            let mut stroke = UnderWay::begin(&mut scene, Some(1500.0), &brush).expect("the sky has a map");
+            let mut stroke = UnderWay::begin(&scene, Some(1500.0), &brush).expect("the sky has a map");
             for side in [0.0, 0.1 * to_the, 0.3 * to_the] {
                 stroke.touch(&mut scene, Vec3::new(side, 0.5, -1.0).normalize(), 20_000.0).expect("there is room");
                 // A press alone is no flow.
@@ -259,7 +271,7 @@ mod tests {
     fn painted(touches: &[Vec3]) -> Scene {
         let mut scene = Scene::default();
         let brush = PaintState { brush: Brush::Erase, radius_m: 240.0, ..PaintState::default() };
-        let mut stroke = UnderWay::begin(&mut scene, Some(1500.0), &brush).expect("the sky has a map");
+        let mut stroke = UnderWay::begin(&scene, Some(1500.0), &brush).expect("the sky has a map");
         for towards in touches {
             stroke.touch(&mut scene, *towards, 0.0).expect("there is room");
         }
@@ -289,22 +301,22 @@ mod tests {
         let brush = PaintState::default();
         let mut mapless = Scene::default();
         mapless.layers[0].model = DensityModel::Shapes;
-        assert_eq!(UnderWay::begin(&mut mapless, None, &brush).err(), Some(BrushError::Mapless));
+        assert_eq!(UnderWay::begin(&mapless, None, &brush).err(), Some(BrushError::Mapless));
         let mut clear = Scene::default();
         clear.weather.coverage = 0.0;
-        assert_eq!(UnderWay::begin(&mut clear, None, &brush).err(), Some(BrushError::Hidden));
+        assert_eq!(UnderWay::begin(&clear, None, &brush).err(), Some(BrushError::Hidden));
         let mut full = Scene::default();
         full.weather.layers.resize(MAX_LAYERS, MapLayer::default());
-        assert_eq!(UnderWay::begin(&mut full, None, &brush).err(), Some(BrushError::Full));
+        assert_eq!(UnderWay::begin(&full, None, &brush).err(), Some(BrushError::Full));
         let down = painted(&[Vec3::NEG_Y]);
-        assert_eq!(down.weather.layers[1].strokes.dabs(), 0, "nothing is up there when looking down from below");
+        assert_eq!(down, Scene::default(), "nothing is up there when looking down from below");
     }
 
     #[test]
     fn no_touch_paints_more_than_is_loaded_again() {
         let mut scene = Scene::default();
         let brush = PaintState { radius_m: 50.0, ..PaintState::default() };
-        let mut stroke = UnderWay::begin(&mut scene, Some(1500.0), &brush).expect("the sky has a map");
+        let mut stroke = UnderWay::begin(&scene, Some(1500.0), &brush).expect("the sky has a map");
         let towards = [Vec3::new(-1.0, 0.5, -1.0).normalize(), Vec3::new(1.0, 0.5, -1.0).normalize()];
         let result = (0..200_000).try_for_each(|i| stroke.touch(&mut scene, towards[i % 2], 0.0));
         assert_eq!(result, Err(BrushError::Worn));

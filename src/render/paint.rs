@@ -7,10 +7,11 @@ use glam::{IVec2, UVec2, Vec2, Vec4};
 use wgpu::util::DeviceExt as _;
 
 use super::context::{Context, Extent};
+use super::uniforms::edge_index;
 use super::uniforms::other::PaintUniforms;
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey};
 use crate::plan::{Effect, FramePlan};
-use crate::scene::{Brush, CloudKind, Stroke, Strokes};
+use crate::scene::{Brush, CloudKind, MapEdge, Stroke, Strokes};
 
 /// Dabs that one job draws: it goes through all of them at each texel that any of them reaches.
 const MOST_AT_ONCE: usize = 256;
@@ -26,8 +27,8 @@ const TEXEL_BYTES: u64 = 48;
 pub(super) struct Painting {
     side: u32,
     applied: Strokes,
-    /// Whether what crosses the map's edge goes on at the other side.
-    repeats: bool,
+    /// What lies beyond the map's edge.
+    edge: MapEdge,
     buffer: wgpu::Buffer,
     /// What was painted before the last dabs that move or smooth: which stroke's, and the first of them.
     kept: Option<((usize, usize), wgpu::Buffer)>,
@@ -36,7 +37,7 @@ pub(super) struct Painting {
 impl Painting {
     /// A layer of so many texels across, without paint.
     pub(super) fn new(gpu: &Gpu, side: u32) -> Self {
-        Self { side, applied: Strokes::default(), repeats: true, buffer: clear(gpu, side), kept: None }
+        Self { side, applied: Strokes::default(), edge: MapEdge::Repeat, buffer: clear(gpu, side), kept: None }
     }
 
     /// What was painted.
@@ -53,11 +54,11 @@ impl Painting {
     pub(super) fn update(
         &mut self,
         context: &Context<'_>,
-        (strokes, repeats): (&Strokes, bool),
+        (strokes, edge): (&Strokes, MapEdge),
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
-        if self.repeats != repeats {
-            *self = Self { repeats, ..Self::new(context.gpu, self.side) };
+        if self.edge != edge {
+            *self = Self { edge, ..Self::new(context.gpu, self.side) };
         }
         let same = self.applied.0.iter().zip(&strokes.0).take_while(|(old, new)| old == new).count();
         let (rest, wanted) = (&self.applied.0[same..], &strokes.0[same..]);
@@ -70,7 +71,7 @@ impl Painting {
         let (first, drawn) = match drawn {
             Some(drawn) => (same, drawn),
             None => {
-                self.buffer = clear(context.gpu, self.side);
+                (self.buffer, self.kept) = (clear(context.gpu, self.side), None);
                 (0, 0)
             }
         };
@@ -171,7 +172,7 @@ impl Painting {
         let extent = ((high + reach).ceil() - corner).min(Vec2::splat(side));
         let (corner, extent) = (corner.as_ivec2(), extent.as_uvec2());
         let uniforms = PaintUniforms {
-            repeats: self.repeats.into(),
+            edge: edge_index(self.edge),
             ..uniforms(stroke, (corner, extent), (dabs.len(), self.side))
         };
         let paint = context.gpu.uniform("paint", bytemuck::bytes_of(&uniforms));
@@ -232,7 +233,7 @@ fn uniforms(stroke: &Stroke, (first, extent): (IVec2, UVec2), (count, side): (us
         count: count as u32,
         side,
         restores: u32::from(stroke.brush == Brush::Restore),
-        repeats: 1,
+        edge: 0,
         grows: match stroke.brush {
             Brush::Grow => GROWTH,
             Brush::Shrink => -GROWTH,
@@ -259,6 +260,7 @@ pub(super) fn blend_key(has_below: bool) -> ProgramKey {
 /// The programs that make what a plan calls for.
 pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
     let draws = plan.runs(Effect::Painting).then(|| [dabs_key(), blend_key(true), blend_key(false)]);
-    let reworks = plan.map_layers.reworked.then(|| [WARP, SMOOTH, KEEP].map(ProgramKey::plain));
+    let reworks =
+        (plan.runs(Effect::Painting) && plan.map_layers.reworked).then(|| [WARP, SMOOTH, KEEP].map(ProgramKey::plain));
     draws.into_iter().flatten().chain(reworks.into_iter().flatten()).collect()
 }

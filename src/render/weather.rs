@@ -8,6 +8,7 @@ use super::context::{Bound, Context, Extent};
 use super::flow;
 use super::grown::Example;
 use super::paint::{Painting, blend_key};
+use super::uniforms::edge_index;
 use super::uniforms::other::{BlendUniforms, FlowUniforms, MapUniforms};
 use crate::gpu::{Gpu, GpuError, Job, ProgramKey, Texture};
 use crate::images::map::{MapImage, read_map_image};
@@ -43,8 +44,8 @@ type Joining = (MapBlend, f32);
 enum LayerKey {
     /// Between two states, by the share of the later one, and how it joins those below it.
     Between([StateKey; 2], f32, Joining),
-    /// How much of it counts, and whether the map repeats.
-    Painted(Strokes, f32, bool),
+    /// How much of it counts, and what lies beyond the map's edge.
+    Painted(Strokes, f32, MapEdge),
     /// What a flow has done.
     Flow(FlowUniforms),
 }
@@ -207,8 +208,8 @@ impl WeatherMap {
         for (index, layer) in wanted.iter().enumerate().skip(same) {
             let ([before, after], share, (mode, opacity)) = match layer {
                 LayerKey::Between(states, share, joining) => (states, share, joining),
-                LayerKey::Painted(strokes, opacity, repeats) => {
-                    self.lay_over(context, index, (strokes, *opacity, *repeats), jobs)?;
+                LayerKey::Painted(strokes, opacity, edge) => {
+                    self.lay_over(context, index, (strokes, *opacity, *edge), jobs)?;
                     continue;
                 }
                 LayerKey::Flow(uniforms) => {
@@ -220,7 +221,7 @@ impl WeatherMap {
             let (Some(before), Some(after)) = (find(before), find(after)) else {
                 continue;
             };
-            let blend = BlendUniforms { share: *share, mode: blend_index(*mode), opacity: *opacity, repeats: 0 };
+            let blend = BlendUniforms { share: *share, mode: blend_index(*mode), opacity: *opacity, edge: 0 };
             let buffer = context.gpu.uniform("blend", bytemuck::bytes_of(&blend));
             let mut bound: Bound<'_> = vec![
                 ("blend", buffer.as_entire_binding()),
@@ -244,12 +245,12 @@ impl WeatherMap {
         &mut self,
         context: &Context<'_>,
         index: usize,
-        (strokes, opacity, repeats): (&Strokes, f32, bool),
+        (strokes, opacity, edge): (&Strokes, f32, MapEdge),
         jobs: &mut Vec<Job>,
     ) -> Result<(), GpuError> {
         let painting = self.paintings.entry(index).or_insert_with(|| Painting::new(context.gpu, SIDE));
-        painting.update(context, (strokes, repeats), jobs)?;
-        let blend = BlendUniforms { share: 0.0, mode: 0, opacity, repeats: repeats.into() };
+        painting.update(context, (strokes, edge), jobs)?;
+        let blend = BlendUniforms { share: 0.0, mode: 0, opacity, edge: edge_index(edge) };
         let buffer = context.gpu.uniform("blend", bytemuck::bytes_of(&blend));
         let below = index.checked_sub(1).map(|below| &self.joined[below].view);
         let mut bound: Bound<'_> = vec![
@@ -332,7 +333,7 @@ fn layer_at(layer: &MapLayer, weather: &Weather, time_secs: f64) -> Result<Layer
             Ok(LayerKey::Between([key(state), key(state + i64::from(share > 0.0))], share, joining))
         }
         MapSource::Flow => Ok(LayerKey::Flow(flow::at(layer, weather, time_secs))),
-        MapSource::Painted => Ok(LayerKey::Painted(layer.strokes.clone(), joining.1, weather.edge == MapEdge::Repeat)),
+        MapSource::Painted => Ok(LayerKey::Painted(layer.strokes.clone(), joining.1, weather.edge)),
         MapSource::Image => {
             let name = named(layer)?;
             Ok(LayerKey::Between([(); 2].map(|()| StateKey::Image(name.into())), 0.0, joining))

@@ -204,7 +204,40 @@ fn strokes_that_move_are_the_same_however_they_grew_and_leave_nothing() {
             assert!(grown == fresh, "{brush:?}: {count} dabs are not what they are at once");
         }
         assert!(map(&mut kept, &sky(Vec::new(), true)) == bare, "{brush:?} left something behind");
+        // Another stroke below, and another of its kind at its place.
+        let others = |radius| vec![Stroke { radius, ..first.clone() }, Stroke { radius, ..eastwards(brush, 9, 8.0) }];
+        map(&mut kept, &sky(others(0.08), true));
+        other.forget_everything().expect("nothing is under way");
+        let fresh = map(&mut other, &sky(others(0.05), true));
+        assert!(map(&mut kept, &sky(others(0.05), true)) == fresh, "{brush:?} is of what was painted before");
     }
+}
+
+#[test]
+fn moved_cloud_crosses_edges_as_the_map_says_and_comes_back() {
+    let mut renderer = renderer();
+    let bare = map(&mut renderer, &sky(Vec::new(), true));
+    let from_edge = |east: f32| {
+        let dabs = (0..9_u8).map(|i| [(east + f32::from(i) / 64.0).fract(), 0.5]).collect();
+        Stroke { dabs, ..eastwards(Brush::Move, 0, 0.0) }
+    };
+    // Over the edge of a map that repeats.
+    let over = map(&mut renderer, &sky(vec![from_edge(0.95)], true));
+    for index in within([0.95 + 0.125 - 1.0, 0.5], 0.045) {
+        let from = index / 512 * 512 + (index % 512 + 512 - 64) % 512;
+        let apart = [0, 1, 2, 3].map(|channel| (over.rgba[index][channel] - bare.rgba[from][channel]).abs());
+        assert!(apart.iter().all(|apart| *apart < 2e-3), "texel {index}: {apart:?}");
+    }
+    // From beyond the edge of one that ends comes no cloud.
+    let mut ending = sky(vec![Stroke { softness: 0.0, ..from_edge(0.0) }], true);
+    ending.weather.edge = MapEdge::Clear;
+    let inwards = map(&mut renderer, &ending);
+    let column: f32 = (250..262).flat_map(|row| inwards.rgba[row * 512 + 8][..3].to_vec()).sum();
+    assert_eq!(column, 0.0, "cloud that was nowhere");
+    // Painting that is taken away takes its moves along.
+    let hard = |brush, radius| Stroke { radius, softness: 0.0, ..eastwards(brush, 9, 8.0) };
+    let strokes = vec![hard(Brush::Move, 0.05), eastwards(Brush::Smooth, 3, 8.0), hard(Brush::Restore, 0.2)];
+    assert!(map(&mut renderer, &sky(strokes, true)) == bare, "something is left of it");
 }
 
 #[test]

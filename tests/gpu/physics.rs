@@ -50,6 +50,32 @@ fn a_ray_that_runs_out_of_steps_sees_through_nothing() {
 }
 
 #[test]
+fn few_steps_are_enough_for_both_stretches_of_a_ray() {
+    // Down through a shell and up out of it again, with a view from above that grazes the ground.
+    let (base, top, extinction) = (500.0_f32, 2500.0_f32, 5e-6_f32);
+    let dir = sloped(0.03, false);
+    for view_steps in [4, 8, 160] {
+        let mut march = March::slab(THICKNESS_M, extinction, dir);
+        (march.domain, march.jittered, march.eye) = (SHELL, true, Vec3::Y * 3000.0);
+        (march.scene.lowest_m, march.scene.highest_m) = (base, top);
+        march.scene.layers[0] = uniform_layer(base, top, extinction);
+        (march.scene.step_m, march.scene.view_steps, march.scene.empty_stride) = (10.0, view_steps, 1.5);
+        let way = shell::shell_segments(
+            DVec3::Y * 3000.0,
+            dir.as_dvec3().normalize(),
+            base.into(),
+            top.into(),
+            f64::from(RADIUS_M),
+        );
+        assert!(way.second.y > way.second.x, "one stretch: {way:?}");
+        let length = way.first.y - way.first.x + way.second.y - way.second.x;
+        let expected = (-f64::from(extinction) * length).exp();
+        let error = worst(march.run().rgba.iter().map(|texel| f64::from(texel[3]) - expected));
+        assert!(error < 5e-3, "{view_steps} steps: off by {error:e} of {expected}");
+    }
+}
+
+#[test]
 fn shell_and_box_absorb_along_their_true_length() {
     let extinction = 4e-4_f32;
     for (domain, dir) in [

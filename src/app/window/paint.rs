@@ -41,7 +41,7 @@ impl App {
                         return;
                     }
                 };
-                match UnderWay::begin(&mut scene, height_m, state) {
+                match UnderWay::begin(&scene, height_m, state) {
                     Ok(stroke) => self.session.stroke = Some(stroke),
                     Err(error) => {
                         result = Err(error);

@@ -187,8 +187,8 @@ gpu_struct! {
         pub side: u32,
         /// 1 if they take paint away.
         pub restores: u32,
-        /// 1 if the map repeats.
-        pub repeats: u32,
+        /// What lies beyond the map's edge, as `edge_index` numbers it.
+        pub edge: u32,
         /// How much a dab draws its surroundings apart, or together where negative; 0 moves them along the stroke.
         pub grows: f32,
         /// Keeps the size a multiple of 16 bytes.
@@ -245,8 +245,8 @@ gpu_struct! {
         pub mode: u32,
         /// How much of it counts.
         pub opacity: f32,
-        /// 1 if the map repeats.
-        pub repeats: u32,
+        /// What lies beyond the map's edge, as `edge_index` numbers it.
+        pub edge: u32,
     }
 
     /// What the relief is made of.
