@@ -45,9 +45,9 @@ choices! {
 params! {
     /// How the sky is computed.
     pub struct Quality ("Quality") {
-        /// Most steps along a view ray.
+        /// Most steps along a view ray; if steps are not equal, the second half of them grow where they would not take all of its way.
         view_steps: u32 = 160, 4..=1024, None;
-        /// Length of the first step inside cloud; up to twice as long where a layer is thicker than 1.2 km, longer in deep, soft sheets, a little shorter where a layer is flatter, and a little longer in very thin cloud. The second half of a ray's steps grow to take what is left of its way.
+        /// Length of the first step inside cloud; up to twice as long where a layer is thicker than 1.2 km, longer in deep, soft sheets, a little shorter where a layer is flatter, and a little longer in very thin cloud.
         step_m: f32 = 45.0, 1.0..=1000.0, Metres, logarithmic;
         /// Growth of the step with distance: metres more per metre.
         step_growth: f32 = 0.0038, 0.0..=0.1, None;
