@@ -1,14 +1,18 @@
-// How far it is from each cell to the nearest one that may hold cloud, one axis after the other (Felzenszwalb and
-// Huttenlocher, "Distance Transforms of Sampled Functions", 2012, by brute force): gaps between the cells' walls, so that
-// a way holds from anywhere in the cell. Across the map it repeats. A leaning layer is sheared: see note_clear.
+// How far it is from each cell to the nearest one that may hold cloud, from how far it is along the rows, one axis after the
+// other (Felzenszwalb and Huttenlocher, "Distance Transforms of Sampled Functions", 2012, by brute force): gaps between the
+// cells' walls, so that a way holds from anywhere in the cell. Across the map it repeats. A leaning layer is sheared: see
+// promised_way.
 #import "generated/BandUniforms.wgsl"
-#import "pass/cloud_field.wgsl"
+#import "generated/LayerUniforms.wgsl"
+#import "generated/SceneUniforms.wgsl"
 #import "pass/clear_way.wgsl"
 
-// 0 across the map from west to east, 1 upwards, 2 from north to south.
-override AXIS: u32 = 0u;
+override LAYERS: u32 = 1u;
+// 1 upwards, then 2 from north to south.
+override AXIS: u32 = 1u;
 
 @group(0) @binding(1) var<uniform> band: BandUniforms;
+@group(1) @binding(0) var<uniform> scene: SceneUniforms;
 @group(2) @binding(0) var ways_before: texture_3d<f32>;
 @group(2) @binding(1) var ways_out: texture_storage_3d<rgba16float, write>;
 

@@ -8,6 +8,7 @@
 #if SHAPES
 #import "pass/cloud_shapes.wgsl"
 #endif
+#import "pass/clear_air.wgsl"
 #import "common/shell.wgsl"
 #import "common/trilinear.wgsl"
 #import "generated/LayerUniforms.wgsl"
@@ -52,9 +53,6 @@ override LAYERS: u32 = 1u;
 #if CURL
 @group(1) @binding(6) var curl_noise: texture_2d<f32>;
 #endif
-#if SKIP
-@group(1) @binding(7) var clear_ways: texture_3d<f32>;
-#endif
 // Voxels in the box: of the one layer that is a file; or, baked, of all layers, a channel each.
 #if GRID
 @group(1) @binding(8) var voxels: texture_3d<f32>;
@@ -84,22 +82,6 @@ struct Reading {
 var<private> counted_reads: u32;
 var<private> counted_light_steps: u32;
 #endif
-
-// How near the last place read was to a surface, where it was clear: 1 far away, towards 0 near. The march shortens its
-// steps by it, so that thin edges are not met by some pixels and missed by others; less where that layer by itself is no denser
-// than what a whole step may leap into, in 1/m, which the march says.
-var<private> clearness: f32;
-var<private> sparse_extinction: f32;
-
-const LEAST_CLEARNESS: f32 = 0.25;
-
-fn note_clearness(layer: LayerUniforms, of_layer: f32) {
-  let extinction = max(layer.extinction_per_m * layer.density_scale, 1e-12);
-  clearness = min(clearness, max(of_layer, clamp(sparse_extinction / extinction, LEAST_CLEARNESS, 1.0)));
-}
-
-// How far from the last place read, where it was clear, no cloud is promised in the direction that was asked for.
-var<private> clear_way: f32;
 
 fn count_read() {
 #if COUNT
@@ -171,31 +153,6 @@ fn greatest_body(layer: LayerUniforms, field: f32) -> f32 {
 #else
   return body;
 #endif
-}
-
-// Called where the map says that a layer has no cloud: asks for how far. Through a leaning layer the way that the map
-// promises is the shorter the steeper it is.
-fn note_clear(index: u32, p: vec3f, h: f32, reading: Reading) {
-  var way = 0.0;
-#if SKIP
-  if (any(reading.towards != vec3f(0.0))) {
-    count_read();
-    let layer = scene.layers[index];
-    let uv = map_uv(layer, p.xz, h);
-    let cells = vec3f(textureDimensions(clear_ways));
-    let cell = vec3u(min(vec3f(uv - floor(uv), h).xzy * cells, cells - 1.0));
-    way = textureLoad(clear_ways, cell, 0)[index];
-    // How far a place is carried at most as it rises, relative to how far it rises.
-    let shear = 2.0 * length(layer.lean.xy) * layer.per_thickness;
-    if (DOMAIN == DOMAIN_SHELL) {
-      let slope = steepest(p, reading.towards, way, scene.planet_radius_m);
-      way /= (1.0 + shear * slope) * flattening(p, way, scene.planet_radius_m);
-    } else {
-      way /= 1.0 + shear * abs(reading.towards.y);
-    }
-  }
-#endif
-  clear_way = min(clear_way, way);
 }
 
 fn map_texel(layer: LayerUniforms, p: vec2f, h: f32) -> vec4f {
@@ -452,18 +409,6 @@ fn voxels_at(p: vec2f, h: f32) -> vec4f {
   return trilinear(voxels, vec3f(uv.x, h, uv.y));
 }
 #endif
-
-// From a place outside of a layer to where a ray enters its heights.
-fn way_to(layer: LayerUniforms, p: vec3f, dir: vec3f) -> f32 {
-  let top_m = layer.base_m + 1.0 / layer.per_thickness;
-  var ahead = Segments(vec2f(0.0), vec2f(0.0));
-  if (DOMAIN == DOMAIN_SHELL) {
-    ahead = shell_segments(p, dir, layer.base_m, top_m, scene.planet_radius_m);
-  } else {
-    ahead = slab_segments(p, dir, layer.base_m, top_m);
-  }
-  return select(FAR_M, ahead.first.x, ahead.first.y > ahead.first.x);
-}
 
 // Density of one layer, 0..1 times the artist's multiplier.
 fn layer_density(index: u32, p: vec3f, altitude: f32, reading: Reading) -> f32 {

@@ -153,7 +153,7 @@ effects! {
         flags: ["FRONT"], bindings: [], passes: [], may_differ: 1e-6
     }
     ClearWays ("map of clear ways", "How far it is to any cloud, so that clear air is crossed in long steps.") {
-        flags: ["SKIP"], bindings: ["clear_ways"], passes: ["clear_cells", "clear_spread"]
+        flags: ["SKIP"], bindings: ["clear_ways"], passes: ["clear_cells", "clear_row", "clear_spread"]
     }
     KeyLight ("light march", "Light of sun or moon on the clouds, and its march through them.") {
         flags: ["LIT"], bindings: [], passes: []

@@ -11,7 +11,7 @@ use crate::plan::{FramePlan, MarchVariant};
 use crate::scene::{Frame, MAX_LAYERS};
 
 /// Cells across the map, upwards through each layer, and across the map again.
-const CELLS: [u32; 3] = [128, 16, 128];
+const CELLS: [u32; 3] = [256, 16, 256];
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// What the ways depend on.
@@ -21,7 +21,7 @@ struct From {
     /// Which of the automaton's densities.
     living: u64,
     layers: [LayerUniforms; MAX_LAYERS],
-    march: [ProgramKey; 2],
+    march: [ProgramKey; 3],
 }
 
 /// The ways, where rays skip by them.
@@ -55,24 +55,21 @@ impl Clearance {
         }
         let scene = context.gpu.uniform("scene", bytemuck::bytes_of(&field));
         let [there, back] = [(); 2].map(|()| Texture::new_3d(context.gpu, "clear_ways", CELLS, (1, FORMAT)));
-        let [cells, spread] = &from.march;
+        let [cells, row, spread] = &from.march;
+        let scene = || ("scene", scene.as_entire_binding());
         let mut bound = living.resources();
-        bound.extend([
-            ("scene", scene.as_entire_binding()),
-            ("weather_map", view_of(map)),
-            ("ways_out", view_of(&there)),
-        ]);
+        bound.extend([scene(), ("weather_map", view_of(map)), ("ways_out", view_of(&there))]);
         jobs.push(context.whole("clear_cells", cells, &bound, Extent::image([CELLS[0], CELLS[2]]))?);
-        for (axis, before, after) in [(0, &there, &back), (1, &back, &there), (2, &there, &back)] {
-            let bound = vec![
-                ("scene", scene.as_entire_binding()),
-                ("ways_before", view_of(before)),
-                ("ways_out", view_of(after)),
-            ];
+        let between = |before, after| vec![scene(), ("ways_before", view_of(before)), ("ways_out", view_of(after))];
+        for (is_back, bound) in [(0, between(&there, &back)), (1, between(&back, &there))] {
+            let key = row.clone().with_constant("BACK", is_back);
+            jobs.push(context.whole("clear_row", &key, &bound, Extent::image([CELLS[1], CELLS[2]]))?);
+        }
+        for (axis, bound) in [(1, between(&there, &back)), (2, between(&back, &there))] {
             let key = spread.clone().with_constant("AXIS", axis);
             jobs.extend(context.banded("clear_spread", &key, &bound, Extent::solid(CELLS))?);
         }
-        self.made = Some((from, back));
+        self.made = Some((from, there));
         Ok(())
     }
 
@@ -110,16 +107,21 @@ fn in_place(layer: LayerUniforms) -> LayerUniforms {
     }
 }
 
-/// The programs that say which cells may hold cloud, and how far it is to them.
-fn keys(march: MarchVariant) -> [ProgramKey; 2] {
-    let march = march.to_bake().field_alone();
-    ["pass/clear_cells.wgsl", "pass/clear_spread.wgsl"].map(|file| field_key(file, march))
+/// The programs that say which cells may hold cloud, and how far it is to them, along rows and across.
+fn keys(march: MarchVariant) -> [ProgramKey; 3] {
+    let spreading = |file| ProgramKey::plain(file).with_constant("LAYERS", march.layers);
+    [
+        field_key("pass/clear_cells.wgsl", march.to_bake().field_alone()),
+        spreading("pass/clear_row.wgsl"),
+        spreading("pass/clear_spread.wgsl"),
+    ]
 }
 
 /// The programs that make what a plan calls for.
 pub(super) fn programs(plan: &FramePlan) -> Vec<ProgramKey> {
     let Some(march) = plan.march.filter(|march| march.skip) else { return Vec::new() };
-    let [cells, spread] = keys(march);
-    let along = |axis| spread.clone().with_constant("AXIS", axis);
-    vec![cells, along(0), along(1), along(2)]
+    let [cells, row, spread] = keys(march);
+    let [along, back] = [0, 1].map(|is_back| row.clone().with_constant("BACK", is_back));
+    let [up, across] = [1, 2].map(|axis| spread.clone().with_constant("AXIS", axis));
+    vec![cells, along, back, up, across]
 }

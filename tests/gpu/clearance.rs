@@ -13,7 +13,7 @@ use crate::common::slab::{FLAT, March, PRODUCT, PROFILE, SHELL, THESIS, noisy_la
 use crate::common::{Case, Random, bits3, gpu};
 
 /// As many cells as the renderer has.
-const CELLS: [u32; 3] = [128, 16, 128];
+const CELLS: [u32; 3] = [256, 16, 256];
 
 fn key(file: &'static str, (domain, layers): (u32, usize)) -> ProgramKey {
     ProgramKey::plain(file)
@@ -24,17 +24,21 @@ fn key(file: &'static str, (domain, layers): (u32, usize)) -> ProgramKey {
 
 /// The ways over the baked map, made by the production passes.
 fn ways(scene: &wgpu::Buffer, layers: usize) -> Texture {
-    let layers = (FLAT, layers);
     let [there, back] = [(); 2].map(|()| Texture::new_3d(gpu(), "ways", CELLS, (1, wgpu::TextureFormat::Rgba16Float)));
     let map = &Field::baked().map;
     let scene = || ("scene", scene.as_entire_binding());
     let bound = vec![scene(), ("weather_map", view_of(map)), ("ways_out", view_of(&there))];
-    run(&key("pass/clear_cells.wgsl", layers), &bound, [CELLS[0], CELLS[2], 1]);
-    for (axis, before, after) in [(0, &there, &back), (1, &back, &there), (2, &there, &back)] {
-        let bound = vec![scene(), ("ways_before", view_of(before)), ("ways_out", view_of(after))];
-        run(&key("pass/clear_spread.wgsl", layers).with_constant("AXIS", axis), &bound, CELLS);
+    run(&key("pass/clear_cells.wgsl", (FLAT, layers)), &bound, [CELLS[0], CELLS[2], 1]);
+    let spreading = |file| ProgramKey::plain(file).with_constant("LAYERS", u32::try_from(layers).expect("few layers"));
+    let between = |before, after| vec![scene(), ("ways_before", view_of(before)), ("ways_out", view_of(after))];
+    for (is_back, bound) in [(0, between(&there, &back)), (1, between(&back, &there))] {
+        let key = spreading("pass/clear_row.wgsl").with_constant("BACK", is_back);
+        run(&key, &bound, [CELLS[1], CELLS[2], 1]);
     }
-    back
+    for (axis, bound) in [(1, between(&there, &back)), (2, between(&back, &there))] {
+        run(&spreading("pass/clear_spread.wgsl").with_constant("AXIS", axis), &bound, CELLS);
+    }
+    there
 }
 
 /// Results of `test/eval_clear.wgsl`.
@@ -125,7 +129,7 @@ fn half_of_the_clear_air_between_fair_weather_clouds_is_crossed_at_once() {
     let frame = frame(&scene, &quality, [32, 18], Output::Display);
     let mut renderer = renderer();
     let ways = renderer.table(&frame, TableKind::ClearWays).expect("they are made").expect("the sky has a map");
-    let cells = [128, 16, 128];
+    let cells = CELLS;
     assert_eq!(ways.size, [cells[0], cells[1] * cells[2]], "slices from north to south");
     let mut random = Random::new(91);
     let (mut clear, mut skipped) = (0, 0);
@@ -149,5 +153,5 @@ fn half_of_the_clear_air_between_fair_weather_clouds_is_crossed_at_once() {
     }
     println!("{skipped} of {clear} clear places lie in cells that are crossed at once");
     // Of the rest most lies inside of bodies, where the noise alone keeps it clear.
-    assert!(skipped * 100 >= clear * 48, "{skipped} of {clear}");
+    assert!(skipped * 100 >= clear * 60, "{skipped} of {clear}");
 }

@@ -145,8 +145,8 @@ fn one_edit_reaches_few_programs() {
         }
     }
     println!("{} programs, {} with one edit", as_they_are.len(), edited.len());
-    assert!(as_they_are.len() <= 110 && edited.len() > as_they_are.len(), "{} programs", as_they_are.len());
-    assert!(edited.len() <= 660, "{} programs with one edit", edited.len());
+    assert!(as_they_are.len() <= 95 && edited.len() > as_they_are.len(), "{} programs", as_they_are.len());
+    assert!(edited.len() <= 500, "{} programs with one edit", edited.len());
 }
 
 #[test]
