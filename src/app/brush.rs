@@ -109,6 +109,11 @@ impl UnderWay {
             [f64::from(camera.east_m) + f64::from(there.x), f64::from(camera.south_m) + f64::from(there.z)];
         let Some(layer) = scene.layers.get(self.layer) else { return Ok(()) };
         let place = map_place(scene, layer, [east, f64::from(self.height_m), south], time_secs);
+        self.touch_map(scene, place, time_secs)
+    }
+
+    /// Draws it on to a place on the weather map, in edges of the map from its corner.
+    pub(super) fn touch_map(&mut self, scene: &mut Scene, place: DVec2, time_secs: f64) -> Result<(), BrushError> {
         let is_endless = scene.weather.edge == MapEdge::Repeat;
         let is_on_map = is_endless || (place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all());
         if self.last.is_none() && !is_on_map {
@@ -294,6 +299,22 @@ mod tests {
                 assert!((metres - 60.0).abs() < 1.0, "{metres} m apart");
             }
         }
+    }
+
+    #[test]
+    fn the_map_is_painted_where_it_is_touched() {
+        let mut scene = Scene::default();
+        // Whatever the wind has done with it.
+        let brush = PaintState { radius_m: 480.0, ..PaintState::default() };
+        let mut stroke = UnderWay::begin(&scene, None, &brush).expect("the sky has a map");
+        for place in [DVec2::new(0.97, 0.5), DVec2::new(1.02, 0.5)] {
+            stroke.touch_map(&mut scene, place, 5000.0).expect("there is room");
+        }
+        let dabs = &scene.weather.layers[1].strokes.0[0].dabs;
+        assert_eq!(dabs.first(), Some(&[0.97, 0.5]));
+        // A quarter of a fiftieth apart, over the edge of a map that repeats.
+        assert_eq!(dabs.len(), 11, "{dabs:?}");
+        assert!((dabs[10][0] - 0.02).abs() < 1e-4 && dabs.iter().all(|dab| dab[1] == 0.5), "{dabs:?}");
     }
 
     #[test]

@@ -36,10 +36,12 @@ pub(super) enum Place {
     Traced,
     /// What the window shows at rest.
     AtRest,
+    /// The weather map from above.
+    Map,
 }
 
 impl Place {
-    const COUNT: usize = 5;
+    const COUNT: usize = 6;
 }
 
 /// A frame of the panels that was run but not yet drawn.

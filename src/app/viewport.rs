@@ -6,7 +6,7 @@ use super::document::Document;
 use super::lab::Governor;
 use super::statistics::Statistics;
 use super::truth::{CompareJob, Outcome, Truths, Wishes};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Texture};
 use crate::plan::{Forced, FramePlan, Integrator};
 use crate::render::probe::Probe;
 use crate::render::{LightHistogram, Progress, RenderError, Renderer};
@@ -334,6 +334,17 @@ impl Viewport {
         self.renderer.light_histogram()
     }
 
+    /// The weather map from above; a frame behind while pictures are under way.
+    pub(super) fn map_view(&mut self) -> Result<Option<&Texture>, RenderError> {
+        let Some(inputs) = &self.begun else { return Ok(None) };
+        self.renderer.map_view(&inputs.frame())
+    }
+
+    /// Lets go of it.
+    pub(super) fn close_map(&mut self) {
+        self.renderer.close_map_view();
+    }
+
     /// What was found broken since this was asked before.
     pub(super) fn take_broken(&mut self) -> Option<String> {
         self.broken.take()
@@ -366,7 +377,7 @@ impl Viewport {
     pub(super) fn readout(&self) -> Readout {
         Readout {
             adapter: self.renderer.gpu().description(),
-            size: self.renderer.display().map(crate::gpu::Texture::size).unwrap_or_default(),
+            size: self.renderer.display().map(Texture::size).unwrap_or_default(),
             memory_bytes: self.renderer.memory_bytes() + self.truths.bytes(),
             ..self.statistics.readout()
         }

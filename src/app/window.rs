@@ -366,8 +366,7 @@ impl App {
         }
         let begun = Instant::now();
         live.due = None;
-        live.show_truth(&mut self.session);
-        live.show_difference(&mut self.session);
+        live.show_pictures(&mut self.session);
         let Some(surface) = &mut live.surface else { return };
         surface.follow_window(&live.gpu);
         let viewport = &mut self.session.ui.viewport;

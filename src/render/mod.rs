@@ -13,6 +13,7 @@ mod flow;
 mod grown;
 mod interactive;
 mod layers;
+pub mod map_view;
 pub mod meter;
 mod output;
 mod paint;
@@ -154,6 +155,7 @@ pub struct Renderer {
     weather: WeatherMap,
     clearance: Clearance,
     sun_grid: SunGrid,
+    map_view: map_view::MapView,
     voxels: Voxels,
     living: Living,
     targets: Option<Targets>,
@@ -192,6 +194,7 @@ impl Renderer {
             weather: WeatherMap::new(),
             clearance: Clearance::default(),
             sun_grid: SunGrid::default(),
+            map_view: map_view::MapView::default(),
             voxels: Voxels::default(),
             living: Living::default(),
             targets: None,
@@ -309,6 +312,7 @@ impl Renderer {
             + self.weather.bytes()
             + self.clearance.bytes()
             + self.sun_grid.bytes()
+            + self.map_view.bytes()
             + self.voxels.bytes()
             + self.living.bytes()
             + self.sky.as_ref().map_or(0, SkyTables::bytes)

@@ -3,8 +3,8 @@
 use super::uniforms::air::AirUniforms;
 use super::uniforms::other::{
     AutomatonUniforms, BlendUniforms, DisplayUniforms, FlowUniforms, GlowUniforms, GroundUniforms, GrowUniforms,
-    MapUniforms, PaintUniforms, PlainUniforms, ReliefUniforms, ShaftUniforms, ShapeUniforms, ShapesUniforms,
-    TruthUniforms,
+    MapUniforms, MapViewUniforms, PaintUniforms, PlainUniforms, ReliefUniforms, ShaftUniforms, ShapeUniforms,
+    ShapesUniforms, TruthUniforms,
 };
 use super::uniforms::scene::{BandUniforms, CameraUniforms, LayerUniforms, SceneUniforms, ViewUniforms};
 use crate::gpu::ShaderTable;
@@ -76,6 +76,7 @@ pub const TABLE: ShaderTable = ShaderTable {
         GrowUniforms::GENERATED,
         LayerUniforms::GENERATED,
         MapUniforms::GENERATED,
+        MapViewUniforms::GENERATED,
         PaintUniforms::GENERATED,
         PlainUniforms::GENERATED,
         TruthUniforms::GENERATED,

@@ -167,6 +167,12 @@ impl Scene {
         self.numbered_layers().map(|(_, layer)| layer)
     }
 
+    /// The first of them that stands where the weather map says: what a picture of the map shows, and what is painted where
+    /// nothing says how high.
+    pub fn layer_on_map(&self) -> Option<(usize, &CloudLayer)> {
+        self.numbered_layers().find(|(_, layer)| layer.reads_map())
+    }
+
     /// The same, each with its index among all.
     pub fn numbered_layers(&self) -> impl Iterator<Item = (usize, &CloudLayer)> {
         let coverage = self.weather.greatest_coverage();

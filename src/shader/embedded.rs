@@ -67,6 +67,7 @@ files! {
     "pass/composite.wgsl",
     "pass/converged.wgsl",
     "pass/majorant.wgsl",
+    "pass/map_view.wgsl",
     "pass/march.wgsl",
     "pass/march_clear.wgsl",
     "pass/march_state.wgsl",

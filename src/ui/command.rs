@@ -65,6 +65,8 @@ pub enum Command {
     KeepCamera,
     /// Paint clouds over the picture, or not.
     Paint,
+    /// The weather map from above on or off.
+    Map,
     /// Directions over the picture on or off.
     Guides,
     /// Draw only a part of the picture, or all of it.
@@ -104,7 +106,7 @@ pub enum Command {
 const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// Command, key, and name for people.
-const TABLE: [(Command, Modifiers, Key, &str); 45] = [
+const TABLE: [(Command, Modifiers, Key, &str); 46] = [
     (Command::New, Modifiers::COMMAND, Key::N, "New"),
     (Command::Open, Modifiers::COMMAND, Key::O, "Open…"),
     // The longer combination first: a shortcut also fires when more modifiers are held.
@@ -119,6 +121,7 @@ const TABLE: [(Command, Modifiers, Key, &str); 45] = [
     (Command::History, Modifiers::NONE, Key::F8, "History"),
     (Command::Inspect, Modifiers::NONE, Key::I, "Inspect points"),
     (Command::Paint, Modifiers::NONE, Key::P, "Paint clouds"),
+    (Command::Map, Modifiers::NONE, Key::M, "Weather map from above"),
     (Command::Histogram, Modifiers::NONE, Key::H, "Histogram and exposure"),
     (Command::Snapshot, Modifiers::NONE, Key::F7, "Take a snapshot"),
     (Command::Vary, Modifiers::COMMAND, Key::R, "Vary the sky"),
@@ -229,6 +232,7 @@ impl Command {
                 // A click cannot do both.
                 state.inspector.is_on &= !state.paint.is_on;
             }
+            Self::Map => state.map.is_open = !state.map.is_open,
             Self::Snapshot => ask(Request::Snapshot),
             Self::Vary => state.vary.is_open = !state.vary.is_open,
             Self::CopySky => {
@@ -323,6 +327,7 @@ impl Command {
             Self::Vary => state.vary.is_open,
             Self::Inspect => state.inspector.is_on,
             Self::Paint => state.paint.is_on,
+            Self::Map => state.map.is_open,
             _ => false,
         }
     }
@@ -333,6 +338,7 @@ impl Command {
             self,
             Self::Inspect
                 | Self::Paint
+                | Self::Map
                 | Self::Histogram
                 | Self::Guides
                 | Self::FrameClouds

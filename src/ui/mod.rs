@@ -11,6 +11,7 @@ mod histogram;
 mod history;
 mod inspector;
 mod lab;
+mod map;
 mod menu;
 mod overlay;
 mod paint;
@@ -34,6 +35,7 @@ pub use export_form::ExportForm;
 pub use histogram::HistogramState;
 pub use inspector::{InspectorState, Picked};
 pub use lab::{LabState, LabView, Measured, Phase};
+pub use map::MapState;
 pub use overlay::{PassLine, Readout};
 pub use paint::{PaintState, Touch};
 pub use palette::PaletteState;
@@ -74,6 +76,8 @@ pub struct State {
     pub inspector: InspectorState,
     /// The brush.
     pub paint: PaintState,
+    /// The weather map from above.
+    pub map: MapState,
     /// Commands by name.
     pub palette: PaletteState,
     /// Random changes.
@@ -136,6 +140,7 @@ impl Default for State {
             snapshots: SnapshotState::default(),
             inspector: InspectorState::default(),
             paint: PaintState::default(),
+            map: MapState::default(),
             palette: PaletteState::default(),
             vary: VaryState::default(),
             histogram: HistogramState::default(),
@@ -250,6 +255,9 @@ pub fn show(
     }
     inspector::show(ui.ctx(), area, &state.inspector);
     paint::show(ui.ctx(), area, &mut state.paint);
+    if state.map.is_open && !state.hide_all {
+        map::show(ui.ctx(), area, (&mut state.map, &mut state.paint), document, &mut actions);
+    }
     if state.vary.is_open && !state.hide_all {
         vary::show(ui.ctx(), area, (&mut state.vary, document), &mut actions);
     }

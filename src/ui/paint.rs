@@ -9,10 +9,12 @@ use crate::scene::{Brush, CloudKind, FlowKind, Scene};
 /// The brush touched the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
-    /// Where, 0 to 1 from the top left of the picture.
+    /// Where, 0 to 1 from the top left of the picture; or on the weather map, in its edges from its corner.
     pub at: [f32; 2],
     /// Whether a stroke begins there.
     pub begins: bool,
+    /// Whether it is the map that was touched.
+    pub is_on_map: bool,
 }
 
 /// The brush, and what it touched.
@@ -88,7 +90,7 @@ pub(super) fn over_picture(
     state.is_drawing = is_down && (state.is_drawing || begins);
     if let Some(pointer) = pointer.filter(|_| state.is_drawing || begins) {
         let at = (pointer - place.min) / place.size();
-        let touch = Touch { at: [at.x, at.y], begins };
+        let touch = Touch { at: [at.x, at.y], begins, is_on_map: false };
         if state.touches.last() != Some(&touch) {
             state.touches.push(touch);
         }

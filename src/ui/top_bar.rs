@@ -61,7 +61,7 @@ fn menus(
         let groups = [
             &[Command::Undo, Command::Redo, Command::History][..],
             &[Command::ViewBack, Command::ViewForth],
-            &[Command::Paint],
+            &[Command::Paint, Command::Map],
             &[Command::Preferences],
         ];
         entries(ui, (state, document), &groups, &mut chosen);

@@ -5,9 +5,11 @@ use std::sync::Arc;
 use nephoscope::render::Renderer;
 use nephoscope::render::tables::{Table, TableKind};
 use nephoscope::render::uniforms::map_place;
-use nephoscope::scene::{Brush, CloudKind, MapBlend, MapEdge, MapLayer, MapSource, Scene, Stroke, Strokes};
+use nephoscope::scene::{
+    Brush, CloudKind, MapBlend, MapEdge, MapLayer, MapSource, Output, Quality, Scene, Stroke, Strokes,
+};
 
-use crate::common::sky::table;
+use crate::common::sky::{frame, table};
 use crate::common::{Random, gpu};
 
 fn sky(strokes: Vec<Stroke>, over_generated: bool) -> Scene {
@@ -335,4 +337,64 @@ fn a_place_in_the_sky_is_the_place_on_the_map_that_it_shows() {
     scene.weather.moves = false;
     let held = at(&scene, [0.0, base, 0.0], 1e6);
     assert!((held - 0.5).length() < 1e-9, "{held}");
+}
+
+#[test]
+fn the_map_from_above_is_the_map_that_clouds_stand_on() {
+    let stroke = |brush, at| {
+        let (kind, radius, strength, softness, amount) = (CloudKind::Stratus, 0.2, 1.0, 0.5, 1.0);
+        Stroke { brush, kind, radius, strength, softness, amount, dabs: vec![at] }
+    };
+    let mut renderer = renderer();
+    let mut scene = sky(vec![stroke(Brush::Erase, [0.3, 0.3]), stroke(Brush::Add, [0.7, 0.7])], true);
+    let quality = Quality::default();
+    let mut clouded = Vec::new();
+    for coverage in [0.36, 0.6] {
+        scene.weather.coverage = coverage;
+        let texels = map(&mut renderer, &scene).rgba;
+        let frame = frame(&scene, &quality, [32, 18], Output::Display);
+        let picture = loop {
+            // Its shader is compiled on another thread.
+            if let Some(picture) = renderer.map_view(&frame).expect("it can be drawn") {
+                break picture.clone();
+            }
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        };
+        let (size, rgba8) = renderer.rgba8_of(&picture).expect("it can be read");
+        assert_eq!(size, [512, 512]);
+        let is_clear = |texel: usize| rgba8[4 * texel] <= 34;
+        // Coverage is a threshold of the map's field.
+        let fields = texels.iter().map(|texel| texel[0] + texel[1] + texel[2]).enumerate();
+        let (clear, cloudy): (Vec<_>, Vec<_>) = fields.partition(|(index, _)| is_clear(*index));
+        let fullest = clear.iter().map(|(_, field)| *field).fold(0.0, f32::max);
+        let emptiest = cloudy.iter().map(|(_, field)| *field).fold(f32::INFINITY, f32::min);
+        assert!(fullest <= emptiest + 1e-3, "clear up to {fullest}, cloud from {emptiest}");
+        clouded.push(cloudy.len());
+        // Stratus was painted, a bluer grey than the cumulus of the map.
+        let painted = &rgba8[4 * (358 * 512 + 358)..][..3];
+        assert!(painted[2] > painted[0] + 20, "{painted:?}");
+        let erased = 154 * 512 + 154;
+        assert!(is_clear(erased), "it was erased");
+        let layer = &scene.layers[0];
+        let mut random = Random::new(31);
+        let mut looked = 0;
+        while looked < 60 {
+            let place = [random.between(-9e3, 9e3), 0.5 * (layer.base_m + layer.top_m), random.between(-9e3, 9e3)];
+            let at = map_place(&scene, layer, place.map(f64::from), 0.0);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "indices of texels")]
+            let [x, y] = (at - at.floor()).to_array().map(|at| (at * 512.0) as usize % 512);
+            // Linear reads reach the neighbours.
+            let around = [[0, 0], [1, 0], [511, 0], [0, 1], [0, 511]];
+            if !around.iter().all(|[dx, dy]| is_clear((y + dy) % 512 * 512 + (x + dx) % 512)) {
+                continue;
+            }
+            let Some(probe) = renderer.probe(&frame, place).expect("it can be looked at") else { continue };
+            looked += 1;
+            assert_eq!(probe.extinction_per_m, 0.0, "the map is clear over {place:?}");
+        }
+    }
+    assert!(clouded[0] > 10_000 && clouded[1] > clouded[0] + 20_000, "{clouded:?} texels");
+    scene.weather.coverage = 0.0;
+    let clear = frame(&scene, &quality, [32, 18], Output::Display);
+    assert!(renderer.map_view(&clear).expect("nothing fails").is_none(), "no layer has cloud");
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nephoscope::gpu::ProgramKey;
 use nephoscope::plan::FramePlan;
-use nephoscope::render::{meter, probe, programs, shaders::TABLE, truth, watch};
+use nephoscope::render::{map_view, meter, probe, programs, shaders::TABLE, truth, watch};
 use nephoscope::scene::builtin::BUILTINS;
 use nephoscope::scene::edit;
 use nephoscope::scene::random::randomise;
@@ -91,6 +91,7 @@ fn reachable() -> BTreeMap<String, ProgramKey> {
         for output in [Output::Display, Output::Linear, Output::CloudsAlone] {
             let plan = FramePlan::new(&Frame { scene, quality, size: [64, 36], time_secs: 0.0, output, window: None });
             keys.extend(programs(&plan));
+            keys.extend(map_view::programs());
             keys.extend(meter::programs(&plan));
             keys.extend(probe::programs(&plan));
             keys.extend(truth::programs(&plan));

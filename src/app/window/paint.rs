@@ -2,10 +2,14 @@
 
 use std::time::Duration;
 
+use glam::DVec2;
+
 use super::App;
 use super::truth::STATUS;
 use crate::app::Action;
 use crate::app::brush::UnderWay;
+use crate::app::viewport::Viewport;
+use crate::render::RenderError;
 
 impl App {
     /// Paints where the brush has touched the picture since the last time. Where a stroke begins, the clouds themselves tell how
@@ -27,13 +31,14 @@ impl App {
                 continue;
             }
             if touch.begins {
-                let height_m = match live.viewport.pick(touch.at) {
+                let picked = if touch.is_on_map { Ok(Some(None)) } else { height_at(&mut live.viewport, touch.at) };
+                let height_m = match picked {
+                    Ok(Some(height_m)) => height_m,
                     // A shader is being compiled: these touches wait.
                     Ok(None) => {
                         live.draw_within(STATUS);
                         break;
                     }
-                    Ok(Some(picked)) => picked.position_m.map(|[_, height, _]| height),
                     Err(error) => {
                         self.session.ui.toasts.error(error);
                         state.touches.clear();
@@ -49,10 +54,14 @@ impl App {
                     }
                 }
             }
-            let (Some(stroke), Some(towards)) = (&mut self.session.stroke, live.viewport.towards(touch.at)) else {
-                break;
+            let Some(stroke) = &mut self.session.stroke else { break };
+            let time_secs = document.time_secs();
+            result = if touch.is_on_map {
+                stroke.touch_map(&mut scene, DVec2::from_array(touch.at.map(f64::from)), time_secs)
+            } else {
+                let Some(towards) = live.viewport.towards(touch.at) else { break };
+                stroke.touch(&mut scene, towards, time_secs)
             };
-            result = stroke.touch(&mut scene, towards, document.time_secs());
             key = stroke.key();
             state.height_m = Some(stroke.height_m);
             done += 1;
@@ -72,4 +81,9 @@ impl App {
             live.draw_within(Duration::ZERO);
         }
     }
+}
+
+/// Height above the sea of what the picture shows at a point, if it shows cloud or ground; nothing while shaders are compiled.
+fn height_at(viewport: &mut Viewport, at: [f32; 2]) -> Result<Option<Option<f32>>, RenderError> {
+    Ok(viewport.pick(at)?.map(|picked| picked.position_m.map(|[_, height, _]| height)))
 }

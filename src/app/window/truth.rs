@@ -220,6 +220,29 @@ impl Live {
         }
     }
 
+    /// Tells the panels of all pictures beside the window's own.
+    pub(super) fn show_pictures(&mut self, session: &mut Session) {
+        self.show_truth(session);
+        self.show_difference(session);
+        self.show_map(session);
+    }
+
+    fn show_map(&mut self, session: &mut Session) {
+        let ui = &mut session.ui;
+        if !ui.map.is_open {
+            ui.map.picture = self.egui.set_picture(&self.gpu, Place::Map, None);
+            self.viewport.close_map();
+            return;
+        }
+        match self.viewport.map_view() {
+            Ok(picture) => ui.map.picture = self.egui.set_picture(&self.gpu, Place::Map, picture),
+            Err(error) => {
+                ui.map.is_open = false;
+                ui.toasts.error(error);
+            }
+        }
+    }
+
     fn status_of(&self, wishes: Wishes) -> crate::ui::Refinement {
         self.viewport.truths.refinement(wishes)
     }

@@ -55,6 +55,18 @@ gpu_struct! {
         pub width: f32,
     }
 
+    /// How a layer reads the weather map of which a picture is drawn.
+    pub struct MapViewUniforms {
+        /// Types that stand for the map's own in xyz, and how much they do in w.
+        pub form: Vec4,
+        /// What coverage makes of the map's field: see `body_of`.
+        pub cover: Vec2,
+        /// 1 if red alone says where cloud is.
+        pub is_texture: f32,
+        /// Keeps the size a multiple of 16 bytes.
+        pub pad0: f32,
+    }
+
     /// What a generated weather map is made of.
     pub struct MapUniforms {
         /// Seed.
