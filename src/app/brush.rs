@@ -4,12 +4,15 @@ use std::sync::Arc;
 
 use glam::{DVec2, Vec3};
 
+use super::whole::WholeCloud;
 use crate::render::uniforms::map_place;
 use crate::scene::{Brush, CloudLayer, FlowKind, MAX_DABS, MAX_LAYERS, MapEdge, MapLayer, MapSource, Scene, Stroke};
 use crate::ui::PaintState;
 
 /// Dabs lie so many radii apart.
 const SPACING: f64 = 0.25;
+/// How much farther than a whole cloud the brush reaches that moves it, or lets it grow or shrink: over the rest it fades.
+const BESIDE: f64 = 1.3;
 /// Speeds of flows at no and at full strength, in metres per second.
 const SPEEDS: [f32; 2] = [2.0, 40.0];
 /// Times after which a flow that was drawn begins anew, in seconds.
@@ -27,6 +30,9 @@ pub(super) enum BrushError {
     /// The list of map layers is full.
     #[error("The weather map has {MAX_LAYERS} layers already; remove one, and painting gets one of its own")]
     Full,
+    /// Whole clouds are wanted, and there is none.
+    #[error("No cloud stands there; click on one, or switch whole clouds off")]
+    Clear,
     /// Too many dabs.
     #[error("{MAX_DABS} dabs are painted already; export the weather map and use it as an image to go on")]
     Worn,
@@ -40,6 +46,10 @@ pub(super) struct UnderWay {
     layer: usize,
     map: usize,
     does: Does,
+    /// Whether one touch is all of it.
+    is_whole: bool,
+    /// From where it is touched to where it works: to the middle of the cloud that it takes along.
+    offset: DVec2,
     /// The last dab, or where a flow begins, not wrapped into the map.
     last: Option<DVec2>,
 }
@@ -74,7 +84,7 @@ impl UnderWay {
         }
         if brush.stirs {
             let does = Does::Flow { layer: Box::new(flow(brush, scale_m)), is_laid: false };
-            return Ok(Self { height_m: height, layer, map, does, last: None });
+            return Ok(Self { height_m: height, layer, map, does, is_whole: false, offset: DVec2::ZERO, last: None });
         }
         // One pass goes so far, but what is moved follows each dab.
         let passes = if brush.brush == Brush::Move { 1.0 } else { SPACING as f32 };
@@ -88,7 +98,50 @@ impl UnderWay {
             amount: brush.amount,
             dabs: Vec::new(),
         });
-        Ok(Self { height_m: height, layer, map, does: Does::Stroke { begun, count: 0 }, last: None })
+        let does = Does::Stroke { begun, count: 0 };
+        Ok(Self { height_m: height, layer, map, does, is_whole: false, offset: DVec2::ZERO, last: None })
+    }
+
+    /// The cloud layer that it works on, by its index among all.
+    pub(super) fn layer(&self) -> usize {
+        self.layer
+    }
+
+    /// Makes it work on all of the cloud at a place: with the first touch, but for a brush that moves, which takes it along.
+    #[allow(clippy::cast_possible_truncation, reason = "places on the map")]
+    pub(super) fn take_whole(&mut self, cloud: &WholeCloud, (place, strength): (DVec2, f32), is_endless: bool) {
+        let Does::Stroke { begun, .. } = &mut self.does else { return };
+        // Places about the middle are moved alike as far as the cloud reaches.
+        let strength = if begun.brush == Brush::Move { 1.0 } else { strength.clamp(0.0, 1.0) };
+        let (radius, places, passes) = match begun.brush {
+            // As many as a stroke through its middle has.
+            Brush::Grow | Brush::Shrink => {
+                (BESIDE * cloud.radius, vec![cloud.middle; (2.0 / SPACING) as usize], SPACING)
+            }
+            Brush::Move => (BESIDE * cloud.radius, Vec::new(), 1.0),
+            // Dabs that overlap by this share the strength.
+            _ => (1.5 * cloud.spacing, cloud.places.clone(), 1.0 / 3.0),
+        };
+        begun.radius = (radius as f32).clamp(1e-3, 0.5);
+        begun.strength = 1.0 - (1.0 - strength).powf(passes as f32);
+        if matches!(begun.brush, Brush::Grow | Brush::Shrink | Brush::Move) {
+            begun.softness = 1.0 - 1.0 / BESIDE as f32;
+        }
+        let on_map = places.into_iter().map(|place| if is_endless { place - place.floor() } else { place });
+        let is_there = |place: &DVec2| place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all();
+        begun.dabs = on_map.filter(is_there).map(|place| [place.x as f32, place.y as f32]).collect();
+        self.is_whole = begun.brush != Brush::Move;
+        self.offset = if self.is_whole { DVec2::ZERO } else { cloud.middle - place };
+    }
+
+    /// Where on the weather map a direction from the eye meets its height, in edges of the map from its corner.
+    pub(super) fn place(&self, scene: &Scene, towards: Vec3, time_secs: f64) -> Option<DVec2> {
+        let there = scene.place_at_height(towards, self.height_m)?;
+        let camera = &scene.camera;
+        let [east, south] =
+            [f64::from(camera.east_m) + f64::from(there.x), f64::from(camera.south_m) + f64::from(there.z)];
+        let layer = scene.layers.get(self.layer)?;
+        Some(map_place(scene, layer, [east, f64::from(self.height_m), south], time_secs))
     }
 
     /// The parameter that it edits, if it has edited any.
@@ -103,17 +156,13 @@ impl UnderWay {
 
     /// Draws it on to where a direction from the eye meets its height.
     pub(super) fn touch(&mut self, scene: &mut Scene, towards: Vec3, time_secs: f64) -> Result<(), BrushError> {
-        let Some(there) = scene.place_at_height(towards, self.height_m) else { return Ok(()) };
-        let camera = &scene.camera;
-        let [east, south] =
-            [f64::from(camera.east_m) + f64::from(there.x), f64::from(camera.south_m) + f64::from(there.z)];
-        let Some(layer) = scene.layers.get(self.layer) else { return Ok(()) };
-        let place = map_place(scene, layer, [east, f64::from(self.height_m), south], time_secs);
+        let Some(place) = self.place(scene, towards, time_secs) else { return Ok(()) };
         self.touch_map(scene, place, time_secs)
     }
 
     /// Draws it on to a place on the weather map, in edges of the map from its corner.
     pub(super) fn touch_map(&mut self, scene: &mut Scene, place: DVec2, time_secs: f64) -> Result<(), BrushError> {
+        let place = place + self.offset;
         let is_endless = scene.weather.edge == MapEdge::Repeat;
         let is_on_map = is_endless || (place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all());
         if self.last.is_none() && !is_on_map {
@@ -131,6 +180,9 @@ impl UnderWay {
             }
             Does::Stroke { count, .. } => *count,
         };
+        if self.is_whole {
+            return Ok(());
+        }
         // Or it was taken back.
         let map = maps.get_mut(self.map).filter(|map| map.strokes.0.len() == count);
         map.map_or(Ok(()), |map| self.dabs(map, place, is_endless))
@@ -196,9 +248,10 @@ impl UnderWay {
     }
 }
 
-/// Lays a stroke without dabs on a painted layer, which is made on top of the map if it is not there; how many strokes it has then.
+/// Lays a stroke, without dabs but for those of a whole cloud, on a painted layer, which is made on top of the map if it is not there; how many strokes it has then.
 fn lay(maps: &mut Vec<MapLayer>, map: usize, begun: &Stroke) -> Result<usize, BrushError> {
-    if maps.get(map).is_some_and(|map| map.strokes.dabs() >= MAX_DABS) {
+    let dabs = begun.dabs.len().max(1);
+    if maps.get(map).is_some_and(|map| map.strokes.dabs() + dabs > MAX_DABS) {
         return Err(BrushError::Worn);
     }
     if maps.len() == map {
@@ -315,6 +368,33 @@ mod tests {
         // A quarter of a fiftieth apart, over the edge of a map that repeats.
         assert_eq!(dabs.len(), 11, "{dabs:?}");
         assert!((dabs[10][0] - 0.02).abs() < 1e-4 && dabs.iter().all(|dab| dab[1] == 0.5), "{dabs:?}");
+    }
+
+    #[test]
+    fn a_whole_cloud_is_worked_on_with_one_touch() {
+        let places = [[0.98, 0.5], [0.99, 0.5], [1.0, 0.5], [1.01, 0.5]].map(DVec2::from_array);
+        let cloud = WholeCloud { middle: places[1], radius: 0.03, places: places.to_vec(), spacing: 0.01 };
+        let stroke = |brush, is_endless| {
+            let mut scene = Scene::default();
+            let brush = PaintState { brush, strength: 0.784, ..PaintState::default() };
+            let mut stroke = UnderWay::begin(&scene, None, &brush).expect("the sky has a map");
+            stroke.take_whole(&cloud, (DVec2::new(0.98, 0.51), brush.strength), is_endless);
+            for place in [DVec2::new(0.98, 0.51), DVec2::new(0.89, 0.51)] {
+                stroke.touch_map(&mut scene, place, 0.0).expect("there is room");
+            }
+            assert!(scene.problems().is_empty(), "{:?}", scene.problems());
+            (*scene.weather.layers[1].strokes.0[0]).clone()
+        };
+        let erased = stroke(Brush::Erase, true);
+        let xs: Vec<f32> = erased.dabs.iter().map(|dab| (dab[0] * 100.0).round()).collect();
+        assert_eq!(xs, [98.0, 99.0, 0.0, 1.0], "wrapped, and no more of them");
+        assert!((erased.radius - 0.015).abs() < 1e-6 && (erased.strength - 0.4).abs() < 1e-3, "{erased:?}");
+        assert_eq!(stroke(Brush::Erase, false).dabs.len(), 3, "one lies beyond the edge");
+        let grown = stroke(Brush::Grow, true);
+        assert!(grown.dabs.len() == 8 && grown.dabs.iter().all(|dab| *dab == [0.99, 0.5]), "{grown:?}");
+        let moved = stroke(Brush::Move, true);
+        assert!((moved.radius - 0.039).abs() < 1e-6 && moved.dabs.len() > 5, "it is taken along: {moved:?}");
+        assert_eq!((moved.dabs[0], moved.strength), ([0.99, 0.5], 1.0), "by its middle, wherever it was touched");
     }
 
     #[test]

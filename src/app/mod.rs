@@ -22,6 +22,7 @@ mod storage;
 mod surface;
 mod truth;
 mod viewport;
+mod whole;
 mod window;
 mod worker;
 

@@ -2,15 +2,18 @@
 
 use std::time::{Duration, Instant};
 
+use glam::DVec2;
+
 use super::document::Document;
 use super::lab::Governor;
 use super::statistics::Statistics;
 use super::truth::{CompareJob, Outcome, Truths, Wishes};
+use super::whole::{WholeCloud, whole_cloud};
 use crate::gpu::{Gpu, Texture};
 use crate::plan::{Forced, FramePlan, Integrator};
 use crate::render::probe::Probe;
 use crate::render::{LightHistogram, Progress, RenderError, Renderer};
-use crate::scene::{DomainKind, Frame, Output, Projection, Quality, Scene, UpdateFraction, Window};
+use crate::scene::{DomainKind, Frame, MapEdge, Output, Projection, Quality, Scene, UpdateFraction, Window};
 use crate::ui::{LabState, Picked, Readout};
 
 /// Work sent to the device at a time. The panels' frame comes after at most one of these.
@@ -338,6 +341,14 @@ impl Viewport {
     pub(super) fn map_view(&mut self) -> Result<Option<&Texture>, RenderError> {
         let Some(inputs) = &self.begun else { return Ok(None) };
         self.renderer.map_view(&inputs.frame())
+    }
+
+    /// The cloud at a place on the weather map, as a layer reads it.
+    pub(super) fn whole_cloud(&mut self, layer: usize, at: DVec2) -> Result<Option<WholeCloud>, RenderError> {
+        let Some(inputs) = &self.begun else { return Ok(None) };
+        let is_endless = inputs.scene.weather.edge == MapEdge::Repeat;
+        let bodies = self.renderer.map_bodies(&inputs.frame(), layer)?;
+        Ok(bodies.and_then(|bodies| whole_cloud(&bodies, at, is_endless)))
     }
 
     /// Lets go of it.

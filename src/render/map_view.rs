@@ -2,12 +2,13 @@
 
 use super::context::Extent;
 use super::passes::view_of;
+use super::tables::TableKind;
 use super::uniforms::field_uniforms;
 use super::uniforms::other::MapViewUniforms;
 use super::weather::SIDE;
 use super::{RenderError, Renderer};
 use crate::gpu::{ProgramKey, Texture, job};
-use crate::scene::{CloudLayer, DensityModel, Frame};
+use crate::scene::{DensityModel, Frame};
 
 /// The last picture, and what it shows: the count of the map, and how it was read.
 #[derive(Debug, Default)]
@@ -27,6 +28,19 @@ pub fn programs() -> [ProgramKey; 1] {
     [ProgramKey::plain("pass/map_view.wgsl")]
 }
 
+/// How a layer of all reads the map, if it has cloud and does.
+fn reading(frame: &Frame<'_>, layer: usize) -> Option<MapViewUniforms> {
+    let mut visible = frame.scene.numbered_layers();
+    let (at, (_, of)) = visible.by_ref().enumerate().find(|(_, (index, _))| *index == layer)?;
+    let uniforms = field_uniforms(frame).layers[at];
+    of.reads_map().then(|| MapViewUniforms {
+        form: uniforms.form,
+        cover: glam::Vec2::new(uniforms.body_scale, uniforms.body_bias),
+        is_texture: f32::from(u8::from(of.model == DensityModel::Texture)),
+        pad0: 0.0,
+    })
+}
+
 impl Renderer {
     /// The weather map of the last picture as the frame's [`Scene::layer_on_map`](crate::scene::Scene::layer_on_map) reads it, coverage included but for that of a
     /// front that comes: `Rgba8Unorm`, north upwards. The one before while a picture is under way or the shader is compiled;
@@ -35,19 +49,10 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::Gpu`] if the device fails.
     pub fn map_view(&mut self, frame: &Frame<'_>) -> Result<Option<&Texture>, RenderError> {
-        let visible = frame.scene.visible_layers().position(CloudLayer::reads_map);
-        let (Some(index), Some(map)) = (visible, self.weather.map()) else {
+        let layer = frame.scene.layer_on_map().map(|(index, _)| index);
+        let (Some(how), Some(map)) = (layer.and_then(|layer| reading(frame, layer)), self.weather.map()) else {
             self.map_view.made = None;
             return Ok(None);
-        };
-        let layer = field_uniforms(frame).layers[index];
-        let is_texture =
-            frame.scene.visible_layers().nth(index).is_some_and(|layer| layer.model == DensityModel::Texture);
-        let how = MapViewUniforms {
-            form: layer.form,
-            cover: glam::Vec2::new(layer.body_scale, layer.body_bias),
-            is_texture: f32::from(u8::from(is_texture)),
-            pad0: 0.0,
         };
         let count = self.weather.count();
         let is_made = self.map_view.made.as_ref().is_some_and(|(of, by, _)| (*of, *by) == (count, how));
@@ -68,6 +73,21 @@ impl Renderer {
             self.map_view.made = Some((count, how, picture));
         }
         Ok(self.map_view.made.as_ref().map(|(.., picture)| picture))
+    }
+
+    /// How deep inside of cloud the weather map of a frame is at each of its texels, 0 to 1, row by row, as a layer of all reads
+    /// it; `None` where it does not.
+    ///
+    /// # Errors
+    /// [`RenderError`] as for [`Self::render`].
+    pub fn map_bodies(&mut self, frame: &Frame<'_>, layer: usize) -> Result<Option<Vec<f32>>, RenderError> {
+        let Some(how) = reading(frame, layer) else { return Ok(None) };
+        let body = |[r, g, b, _]: [f32; 4]| {
+            let field = if how.is_texture > 0.0 { r } else { r + g + b };
+            (field * how.cover.x + how.cover.y).clamp(0.0, 1.0)
+        };
+        let map = self.table(frame, TableKind::WeatherMap)?;
+        Ok(map.map(|map| map.rgba.into_iter().map(body).collect()))
     }
 
     /// Lets go of that picture.

@@ -164,6 +164,9 @@ fn paint(ui: &Ui, (response, place): (&Response, Rect), (scene, on_map): (&Scene
             brush.touches.push(touch);
         }
     }
+    if brush.whole && !brush.stirs {
+        return;
+    }
     let (Some(pointer), Some((_, layer))) = (response.hover_pos(), scene.layer_on_map()) else { return };
     let radius = brush.radius_m / (scene.weather.size_m * layer.map_scale) * place.width();
     let painter = ui.painter_at(place);

@@ -26,6 +26,8 @@ pub struct PaintState {
     pub stirs: bool,
     /// How it stirs.
     pub flow: FlowKind,
+    /// Whether it works on whole clouds, by a click on one; its radius is then theirs.
+    pub whole: bool,
     /// What it paints.
     pub brush: Brush,
     /// The kind of cloud that it adds.
@@ -52,6 +54,7 @@ impl Default for PaintState {
             is_on: false,
             stirs: false,
             flow: FlowKind::Vortex,
+            whole: false,
             brush: Brush::Add,
             kind: CloudKind::Cumulus,
             radius_m: 900.0,
@@ -95,7 +98,8 @@ pub(super) fn over_picture(
             state.touches.push(touch);
         }
     }
-    if let Some(pointer) = response.hover_pos().filter(|_| is_whole) {
+    let has_edge = state.stirs || !state.whole;
+    if let Some(pointer) = response.hover_pos().filter(|_| is_whole && has_edge) {
         edge(&ui.painter_at(place), (place, pointer), scene, state);
     }
 }
@@ -149,6 +153,12 @@ pub(super) fn show(context: &Context, area: Rect, state: &mut PaintState) {
             row::name(ui, &stirs, "Stir", "brush.stirs");
             let paints = !state.stirs;
             if paints {
+                let whole = ui.checkbox(&mut state.whole, "Whole clouds").on_hover_text(
+                    "A click works on all of the cloud under it at once; the brush that moves takes it along while you drag.",
+                );
+                row::name(ui, &whole, "Whole clouds", "brush.whole");
+            }
+            if paints {
                 pick(ui, "brush.does", &mut state.brush);
             } else {
                 pick(ui, "brush.flow", &mut state.flow);
@@ -157,10 +167,17 @@ pub(super) fn show(context: &Context, area: Rect, state: &mut PaintState) {
             if adds {
                 pick(ui, "brush.kind", &mut state.kind);
             }
-            let radius = egui::Slider::new(&mut state.radius_m, 50.0..=20_000.0).logarithmic(true).suffix(" m");
-            slider(ui, radius, "Radius", "brush.radius");
-            slider(ui, egui::Slider::new(&mut state.strength, 0.01..=1.0), "Strength", "brush.strength");
-            if paints {
+            if !(paints && state.whole) {
+                let radius = egui::Slider::new(&mut state.radius_m, 50.0..=20_000.0).logarithmic(true).suffix(" m");
+                slider(ui, radius, "Radius", "brush.radius");
+            }
+            // What a whole cloud has of its own is not asked for.
+            let is_carried = paints && state.whole && state.brush == Brush::Move;
+            if !is_carried {
+                slider(ui, egui::Slider::new(&mut state.strength, 0.01..=1.0), "Strength", "brush.strength");
+            }
+            let is_reshaped = state.whole && matches!(state.brush, Brush::Move | Brush::Grow | Brush::Shrink);
+            if paints && !is_reshaped {
                 slider(ui, egui::Slider::new(&mut state.softness, 0.0..=1.0), "Softness", "brush.softness");
             }
             if adds {

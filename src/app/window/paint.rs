@@ -7,9 +7,10 @@ use glam::DVec2;
 use super::App;
 use super::truth::STATUS;
 use crate::app::Action;
-use crate::app::brush::UnderWay;
+use crate::app::brush::{BrushError, UnderWay};
 use crate::app::viewport::Viewport;
-use crate::render::RenderError;
+use crate::scene::{MapEdge, Scene};
+use crate::ui::{PaintState, Touch};
 
 impl App {
     /// Paints where the brush has touched the picture since the last time. Where a stroke begins, the clouds themselves tell how
@@ -31,23 +32,13 @@ impl App {
                 continue;
             }
             if touch.begins {
-                let picked = if touch.is_on_map { Ok(Some(None)) } else { height_at(&mut live.viewport, touch.at) };
-                let height_m = match picked {
-                    Ok(Some(height_m)) => height_m,
+                match begun(&mut live.viewport, (&scene, document.time_secs()), state, *touch) {
+                    Ok(Some(stroke)) => self.session.stroke = Some(stroke),
                     // A shader is being compiled: these touches wait.
                     Ok(None) => {
                         live.draw_within(STATUS);
                         break;
                     }
-                    Err(error) => {
-                        self.session.ui.toasts.error(error);
-                        state.touches.clear();
-                        self.session.stroke = None;
-                        return;
-                    }
-                };
-                match UnderWay::begin(&scene, height_m, state) {
-                    Ok(stroke) => self.session.stroke = Some(stroke),
                     Err(error) => {
                         result = Err(error);
                         break;
@@ -61,7 +52,8 @@ impl App {
             } else {
                 let Some(towards) = live.viewport.towards(touch.at) else { break };
                 stroke.touch(&mut scene, towards, time_secs)
-            };
+            }
+            .map_err(|error| error.to_string());
             key = stroke.key();
             state.height_m = Some(stroke.height_m);
             done += 1;
@@ -83,7 +75,28 @@ impl App {
     }
 }
 
-/// Height above the sea of what the picture shows at a point, if it shows cloud or ground; nothing while shaders are compiled.
-fn height_at(viewport: &mut Viewport, at: [f32; 2]) -> Result<Option<Option<f32>>, RenderError> {
-    Ok(viewport.pick(at)?.map(|picked| picked.position_m.map(|[_, height, _]| height)))
+/// A stroke that begins where the picture or the map was touched; nothing while shaders are compiled.
+fn begun(
+    viewport: &mut Viewport,
+    (scene, time_secs): (&Scene, f64),
+    brush: &PaintState,
+    touch: Touch,
+) -> Result<Option<UnderWay>, String> {
+    let mut height_m = None;
+    if !touch.is_on_map {
+        let Some(picked) = viewport.pick(touch.at).map_err(|error| error.to_string())? else { return Ok(None) };
+        height_m = picked.position_m.map(|[_, height, _]| height);
+    }
+    let mut stroke = UnderWay::begin(scene, height_m, brush).map_err(|error| error.to_string())?;
+    if brush.whole && !brush.stirs {
+        let place = match viewport.towards(touch.at) {
+            _ if touch.is_on_map => Some(DVec2::from_array(touch.at.map(f64::from))),
+            towards => towards.and_then(|towards| stroke.place(scene, towards, time_secs)),
+        };
+        let place = place.ok_or_else(|| BrushError::Clear.to_string())?;
+        let cloud = viewport.whole_cloud(stroke.layer(), place).map_err(|error| error.to_string())?;
+        let cloud = cloud.ok_or_else(|| BrushError::Clear.to_string())?;
+        stroke.take_whole(&cloud, (place, brush.strength), scene.weather.edge == MapEdge::Repeat);
+    }
+    Ok(Some(stroke))
 }

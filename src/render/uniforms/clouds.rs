@@ -285,7 +285,7 @@ fn light_rounds(rounds: u32, view_steps: u32) -> u32 {
     (MOST_ITERATIONS / rounds / view_steps).saturating_sub(1).max(1)
 }
 
-/// Extinction below which clouds are thin: fewer steps towards the light tell as much, down to half of them.
+/// Extinction below which clouds are thin: fewer steps towards the light tell as much, down to a third of them.
 const THIN_PER_M: f32 = 0.015;
 
 /// Extinction of a layer where it is densest, in 1/m.
@@ -295,7 +295,7 @@ fn greatest_extinction(layer: &CloudLayer) -> f32 {
 
 /// How many steps towards the light a layer takes, relative to a dense one.
 fn light_steps_share(layer: &CloudLayer) -> f32 {
-    (greatest_extinction(layer) / THIN_PER_M).sqrt().clamp(0.5, 1.0)
+    (greatest_extinction(layer) / THIN_PER_M).sqrt().clamp(1.0 / 3.0, 1.0)
 }
 
 /// Steps towards the light: more where layers are thick or the light is low. A way six times as long has twice as many, and
