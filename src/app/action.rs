@@ -30,6 +30,8 @@ pub enum Action {
     SetQualityLevel(QualityLevel),
     /// The camera moved.
     MoveCamera(Camera),
+    /// The camera goes somewhere at once.
+    PlaceCamera(Camera),
     /// The camera returns to where the preset put it.
     ResetCamera,
     /// The camera goes to one that was kept, by its number from 0.
@@ -351,6 +353,7 @@ impl Action {
             self,
             Self::EditScene { .. }
                 | Self::MoveCamera(_)
+                | Self::PlaceCamera(_)
                 | Self::ResetCamera
                 | Self::GoToCamera(_)
                 | Self::ViewBack
@@ -368,7 +371,7 @@ impl Action {
             Self::EditScene { key, .. } => format!("edit {key}"),
             Self::EditQuality { key, .. } => format!("edit quality.{key}"),
             Self::SetQualityLevel(_) => "set the quality level".to_owned(),
-            Self::MoveCamera(_) => "move the camera".to_owned(),
+            Self::MoveCamera(_) | Self::PlaceCamera(_) => "move the camera".to_owned(),
             Self::ResetCamera => "reset the camera".to_owned(),
             Self::GoToCamera(_) => "go to a camera".to_owned(),
             Self::EditCameras { step, .. } => (*step).to_owned(),

@@ -11,6 +11,8 @@ use crate::ui::PaintState;
 
 /// Dabs lie so many radii apart.
 const SPACING: f64 = 0.25;
+/// The same where a whole cloud is taken along: it follows the pointer.
+const CLOSE: f64 = 0.04;
 /// How much farther than a whole cloud the brush reaches that moves it, or lets it grow or shrink: over the rest it fades.
 const BESIDE: f64 = 1.3;
 /// Speeds of flows at no and at full strength, in metres per second.
@@ -52,6 +54,10 @@ pub(super) struct UnderWay {
     offset: DVec2,
     /// The last dab, or where a flow begins, not wrapped into the map.
     last: Option<DVec2>,
+    /// The last touch of the map itself.
+    touched: Option<DVec2>,
+    /// Radii between dabs.
+    spacing: f64,
 }
 
 /// What is being made.
@@ -84,7 +90,17 @@ impl UnderWay {
         }
         if brush.stirs {
             let does = Does::Flow { layer: Box::new(flow(brush, scale_m)), is_laid: false };
-            return Ok(Self { height_m: height, layer, map, does, is_whole: false, offset: DVec2::ZERO, last: None });
+            return Ok(Self {
+                height_m: height,
+                layer,
+                map,
+                does,
+                is_whole: false,
+                offset: DVec2::ZERO,
+                last: None,
+                touched: None,
+                spacing: SPACING,
+            });
         }
         // One pass goes so far, but what is moved follows each dab.
         let passes = if brush.brush == Brush::Move { 1.0 } else { SPACING as f32 };
@@ -99,7 +115,17 @@ impl UnderWay {
             dabs: Vec::new(),
         });
         let does = Does::Stroke { begun, count: 0 };
-        Ok(Self { height_m: height, layer, map, does, is_whole: false, offset: DVec2::ZERO, last: None })
+        Ok(Self {
+            height_m: height,
+            layer,
+            map,
+            does,
+            is_whole: false,
+            offset: DVec2::ZERO,
+            last: None,
+            touched: None,
+            spacing: SPACING,
+        })
     }
 
     /// The cloud layer that it works on, by its index among all.
@@ -131,6 +157,7 @@ impl UnderWay {
         let is_there = |place: &DVec2| place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all();
         begun.dabs = on_map.filter(is_there).map(|place| [place.x as f32, place.y as f32]).collect();
         self.is_whole = begun.brush != Brush::Move;
+        self.spacing = CLOSE;
         self.offset = if self.is_whole { DVec2::ZERO } else { cloud.middle - place };
     }
 
@@ -157,11 +184,19 @@ impl UnderWay {
     /// Draws it on to where a direction from the eye meets its height.
     pub(super) fn touch(&mut self, scene: &mut Scene, towards: Vec3, time_secs: f64) -> Result<(), BrushError> {
         let Some(place) = self.place(scene, towards, time_secs) else { return Ok(()) };
-        self.touch_map(scene, place, time_secs)
+        self.go_on(scene, place, time_secs)
     }
 
     /// Draws it on to a place on the weather map, in edges of the map from its corner.
     pub(super) fn touch_map(&mut self, scene: &mut Scene, place: DVec2, time_secs: f64) -> Result<(), BrushError> {
+        // Of a map that repeats that place which is nearest: the eye, about which it is shown, may have gone over its edge.
+        let is_endless = scene.weather.edge == MapEdge::Repeat;
+        let ahead = self.touched.filter(|_| is_endless).map_or(DVec2::ZERO, |before| (place - before).round());
+        self.touched = Some(place - ahead);
+        self.go_on(scene, place - ahead, time_secs)
+    }
+
+    fn go_on(&mut self, scene: &mut Scene, place: DVec2, time_secs: f64) -> Result<(), BrushError> {
         let place = place + self.offset;
         let is_endless = scene.weather.edge == MapEdge::Repeat;
         let is_on_map = is_endless || (place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all());
@@ -217,7 +252,7 @@ impl UnderWay {
             return Err(BrushError::Worn);
         }
         let Some(stroke) = map.strokes.0.last_mut().map(Arc::make_mut) else { return Ok(()) };
-        let spacing = SPACING * f64::from(stroke.radius);
+        let spacing = self.spacing * f64::from(stroke.radius);
         let most = stroke.dabs.len() + room;
         let mut dab = |place: DVec2| {
             let is_on_map = place.cmpge(DVec2::ZERO).all() && place.cmple(DVec2::ONE).all();
@@ -360,13 +395,14 @@ mod tests {
         // Whatever the wind has done with it.
         let brush = PaintState { radius_m: 480.0, ..PaintState::default() };
         let mut stroke = UnderWay::begin(&scene, None, &brush).expect("the sky has a map");
-        for place in [DVec2::new(0.97, 0.5), DVec2::new(1.02, 0.5)] {
+        for place in [DVec2::new(0.97, 0.5), DVec2::new(0.02, 0.5)] {
             stroke.touch_map(&mut scene, place, 5000.0).expect("there is room");
         }
         let dabs = &scene.weather.layers[1].strokes.0[0].dabs;
         assert_eq!(dabs.first(), Some(&[0.97, 0.5]));
         // A quarter of a fiftieth apart, over the edge of a map that repeats.
         assert_eq!(dabs.len(), 11, "{dabs:?}");
+        // As when the eye goes over the edge, about which the map is shown.
         assert!((dabs[10][0] - 0.02).abs() < 1e-4 && dabs.iter().all(|dab| dab[1] == 0.5), "{dabs:?}");
     }
 

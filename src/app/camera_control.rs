@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec2};
 
-use crate::scene::{Camera, direction};
+use crate::scene::{Camera, FARTHEST_M, direction};
 
 /// Which way a fly key pushes: right, up, forward; each −1, 0 or 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -112,8 +112,6 @@ impl CameraControl {
 
 /// The range of `camera.height_m`.
 const HEIGHT_RANGE_M: (f64, f64) = (1.0, 60_000.0);
-/// The range of `camera.east_m` and `camera.south_m`, on either side.
-const FARTHEST_M: f64 = 1_000_000.0;
 
 fn position(camera: &Camera) -> DVec3 {
     DVec3::new(f64::from(camera.east_m), f64::from(camera.height_m), f64::from(camera.south_m))
@@ -122,9 +120,10 @@ fn position(camera: &Camera) -> DVec3 {
 /// Puts the camera there, or at the nearest place its parameters allow.
 #[allow(clippy::cast_possible_truncation, reason = "rounding to single precision is meant")]
 fn place(camera: &mut Camera, position: DVec3) {
-    camera.east_m = position.x.clamp(-FARTHEST_M, FARTHEST_M) as f32;
+    let farthest_m = f64::from(FARTHEST_M);
+    camera.east_m = position.x.clamp(-farthest_m, farthest_m) as f32;
     camera.height_m = position.y.clamp(HEIGHT_RANGE_M.0, HEIGHT_RANGE_M.1) as f32;
-    camera.south_m = position.z.clamp(-FARTHEST_M, FARTHEST_M) as f32;
+    camera.south_m = position.z.clamp(-farthest_m, farthest_m) as f32;
 }
 
 #[cfg(test)]

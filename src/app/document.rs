@@ -152,7 +152,9 @@ impl Document {
             Action::TravelHistory(steps) => self.travel(*steps),
             Action::ViewBack | Action::ViewForth if !self.has_camera_keys() => self.change(action),
             Action::MeterExposure(_) => self.change(action),
-            Action::MoveCamera(_) | Action::ResetCamera | Action::GoToCamera(_) if !self.has_camera_keys() => {
+            Action::MoveCamera(_) | Action::PlaceCamera(_) | Action::ResetCamera | Action::GoToCamera(_)
+                if !self.has_camera_keys() =>
+            {
                 let before = self.preset.scene.camera.clone();
                 self.change(action);
                 if self.preset.scene.camera != before {
@@ -270,7 +272,7 @@ impl Document {
             }
             Action::EditQuality { quality, .. } => self.quality = (**quality).clone(),
             Action::SetQualityLevel(level) => self.quality = Quality::level(*level),
-            Action::MoveCamera(camera) => scene.camera = camera.clone(),
+            Action::MoveCamera(camera) | Action::PlaceCamera(camera) => scene.camera = camera.clone(),
             Action::ResetCamera => scene.camera = self.saved.at(self.time_secs).camera,
             Action::GoToCamera(index) => {
                 if let Some(kept) = self.preset.cameras.get(*index) {

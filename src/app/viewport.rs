@@ -184,6 +184,7 @@ impl Viewport {
         if !self.renderer.still_is_ready(&point, Integrator::Realtime, 1)? {
             return Ok(None);
         }
+        self.begin_anew();
         let mut still = self.renderer.begin_still(&point, 1)?;
         still.advance(&self.renderer, Duration::MAX)?;
         let picture = still.picture(&self.renderer)?;
@@ -343,12 +344,25 @@ impl Viewport {
         self.renderer.map_view(&inputs.frame())
     }
 
-    /// The cloud at a place on the weather map, as a layer reads it.
-    pub(super) fn whole_cloud(&mut self, layer: usize, at: DVec2) -> Result<Option<WholeCloud>, RenderError> {
-        let Some(inputs) = &self.begun else { return Ok(None) };
-        let is_endless = inputs.scene.weather.edge == MapEdge::Repeat;
-        let bodies = self.renderer.map_bodies(&inputs.frame(), layer)?;
-        Ok(bodies.and_then(|bodies| whole_cloud(&bodies, at, is_endless)))
+    /// The cloud at a place on a scene's weather map, as a layer of all reads it.
+    pub(super) fn whole_cloud(
+        &mut self,
+        (scene, time_secs): (&Scene, f64),
+        layer: usize,
+        at: DVec2,
+    ) -> Result<Option<WholeCloud>, RenderError> {
+        let quality = Quality::default();
+        let frame = Frame { scene, quality: &quality, size: [1, 1], time_secs, output: Output::Linear, window: None };
+        self.begin_anew();
+        let bodies = self.renderer.map_bodies(&frame, layer)?;
+        Ok(bodies.and_then(|bodies| whole_cloud(&bodies, at, scene.weather.edge == MapEdge::Repeat)))
+    }
+
+    /// What is rendered beside the picture ends one that is under way: it has to be begun again.
+    fn begin_anew(&mut self) {
+        if self.since.take().is_some() {
+            self.left = self.left.max(1);
+        }
     }
 
     /// Lets go of it.

@@ -34,21 +34,22 @@ pub(super) fn whole_cloud(bodies: &[f32], at: DVec2, is_endless: bool) -> Option
         return None;
     }
     let map = Map { bodies, side: bodies.len().isqrt(), is_endless };
-    let begin = map.nearest(at)?;
-    let mut texels = Vec::new();
+    // Maps without end are counted from their tile: places far out have no texels to count.
+    let tile = if is_endless { at.floor() } else { DVec2::ZERO };
+    let begin = map.nearest(at - tile)?;
     let mut least = SEEN;
-    while least < 1.0 {
-        let more = map.connected(begin, least);
-        if more.is_empty() {
-            break;
-        }
-        texels = more;
-        if map.extent(&texels) <= LARGEST {
-            break;
-        }
+    let mut texels = map.connected(begin, least);
+    while map.extent(&texels) > LARGEST {
         least += THICKER;
+        // From its rim to the nearest core.
+        let cores = texels.iter().filter(|texel| map.body(**texel).is_some_and(|body| body > least));
+        let apart = |[x, y]: [i32; 2]| (x - begin[0]).pow(2) + (y - begin[1]).pow(2);
+        let Some(core) = cores.min_by_key(|texel| apart(**texel)) else { break };
+        texels = map.connected(*core, least);
     }
-    map.covered(&texels)
+    let cloud = map.covered(&texels)?;
+    let places = cloud.places.into_iter().map(|place| place + tile).collect();
+    Some(WholeCloud { middle: cloud.middle + tile, places, ..cloud })
 }
 
 struct Map<'a> {
@@ -124,6 +125,8 @@ impl Map<'_> {
             texels.iter().map(|texel| texel.map(|at| at.div_euclid(step))).collect();
         let spacing = f64::from(step) / side;
         let places = cells.into_iter().map(|[x, y]| (DVec2::new(f64::from(x), f64::from(y)) + 0.5) * spacing);
+        // The last cells of a map that ends may reach over it.
+        let places = places.map(|place| if self.is_endless { place } else { place.min(DVec2::ONE) });
         Some(WholeCloud { middle, radius, places: places.collect(), spacing })
     }
 }
@@ -171,6 +174,10 @@ mod tests {
         assert!(half.places.iter().all(|place| place.x >= 0.0), "{:?}", half.places);
         assert_eq!(whole_cloud(&bodies, at(20.0, 30.0), true), None, "clear air");
         assert!(whole_cloud(&bodies, at(40.0, 37.5), true).is_some(), "beside the cloud");
+        // Cells of a lattice need not end where the map does.
+        let wall: Vec<f32> = (0..SIDE * SIDE).map(|index| f32::from(u8::from(index % SIDE > 62))).collect();
+        let edge = whole_cloud(&wall, at(63.5, 9.5), false).expect("there is one");
+        assert!(edge.places.iter().all(|place| (0.0..=1.0).contains(&place.x)), "{:?}", edge.places);
         assert_eq!(whole_cloud(&[], at(1.0, 1.0), true), None);
     }
 
@@ -178,9 +185,14 @@ mod tests {
     fn of_clouds_that_run_into_each_other_one_is_picked() {
         // A row of them across all of the map.
         let row: Vec<_> = (0..8).map(|i| ([8.0 * f64::from(i) + 4.0, 20.0], 4.0)).collect();
-        let cloud = whole_cloud(&map(&row), at(20.5, 20.5), true).expect("there is one");
-        assert!((cloud.middle - at(20.0, 20.0)).length() < 1.0 / SIDE as f64, "{:?}", cloud.middle * SIDE as f64);
-        assert!(cloud.radius * (SIDE as f64) < 6.0, "{}", cloud.radius);
+        // In its middle, at its rim, and far out on a map that repeats.
+        for (x, y, tile) in [(20.5, 20.5, 0.0), (20.5, 24.2, 0.0), (20.5, 20.5, 3e7)] {
+            let tile = DVec2::splat(tile);
+            let cloud = whole_cloud(&map(&row), at(x, y) + tile, true).expect("there is one");
+            let middle = cloud.middle - tile;
+            assert!((middle - at(20.0, 20.0)).length() < 1.0 / SIDE as f64, "{:?}", middle * SIDE as f64);
+            assert!(cloud.radius * (SIDE as f64) < 6.0, "{}", cloud.radius);
+        }
         // An overcast is all of a piece.
         let overcast = whole_cloud(&vec![1.0; SIDE * SIDE], at(20.5, 20.5), true).expect("there is one");
         assert!(overcast.places.len() <= 20 * 20, "{}", overcast.places.len());

@@ -59,7 +59,7 @@ impl Clearance {
         let scene = || ("scene", scene.as_entire_binding());
         let mut bound = living.resources();
         bound.extend([scene(), ("weather_map", view_of(map)), ("ways_out", view_of(&there))]);
-        jobs.push(context.whole("clear_cells", cells, &bound, Extent::image([CELLS[0], CELLS[2]]))?);
+        jobs.extend(context.banded("clear_cells", cells, &bound, Extent::image([CELLS[0], CELLS[2]]))?);
         let between = |before, after| vec![scene(), ("ways_before", view_of(before)), ("ways_out", view_of(after))];
         for (is_back, bound) in [(0, between(&there, &back)), (1, between(&back, &there))] {
             let key = row.clone().with_constant("BACK", is_back);

@@ -36,7 +36,9 @@ pub use frame::{Frame, LARGEST_WHOLE_PX, Output, Window};
 pub use layer::{BodyForm, CloudLayer, DensityModel, Optics, PerlinOctaves, Phase, PhaseKind, VoronoiOctaves};
 pub use light::{Air, Moon, PlainLight, Scattering, Sun, SunPlacement, Sunshafts};
 pub use paint::{Brush, CloudKind, MAX_DABS, Stroke, Strokes};
-pub use place::{Camera, Display, Domain, DomainKind, FALSE_COLOURS, FieldOfViewAxis, Ground, Projection, ToneMap};
+pub use place::{
+    Camera, Display, Domain, DomainKind, FALSE_COLOURS, FARTHEST_M, FieldOfViewAxis, Ground, Projection, ToneMap,
+};
 pub use preset::{
     Bookmark, MAX_BOOKMARKS, PRESET_VERSION, Preset, PresetError, file_stem, quality_from_ron, quality_to_ron,
 };

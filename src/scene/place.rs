@@ -80,17 +80,20 @@ choices! {
     }
 }
 
+/// The eye is no farther to the east, west, north or south.
+pub const FARTHEST_M: f32 = 1_000_000.0;
+
 params! {
     /// The eye.
     pub struct Camera ("Camera") {
         /// How directions map onto the picture.
         projection: Projection = Projection::Perspective;
         /// Position towards the east.
-        east_m: f32 = 0.0, -1_000_000.0..=1_000_000.0, Metres;
+        east_m: f32 = 0.0, -FARTHEST_M..=FARTHEST_M, Metres;
         /// Height above sea level, or above the ground where that is higher.
         height_m: f32 = 20.0, 1.0..=60_000.0, Metres, logarithmic;
         /// Position towards the south.
-        south_m: f32 = 0.0, -1_000_000.0..=1_000_000.0, Metres;
+        south_m: f32 = 0.0, -FARTHEST_M..=FARTHEST_M, Metres;
         /// Direction of view, clockwise from north.
         heading_deg: f32 = 0.0, 0.0..=360.0, Degrees;
         /// Direction of view above the horizon.

@@ -253,7 +253,7 @@ impl Command {
             Self::Panel => state.show_panel = !state.show_panel,
             Self::Histogram => state.histogram.is_open = !state.histogram.is_open,
             Self::FalseColour => actions.push(state.histogram.toggled(document)),
-            Self::FrameClouds => actions.push(Action::MoveCamera(super::cameras::at_clouds(document))),
+            Self::FrameClouds => actions.push(Action::PlaceCamera(super::cameras::at_clouds(document))),
             Self::KeepCamera => match super::cameras::kept_with_this(document) {
                 Some(action) => {
                     actions.push(action);

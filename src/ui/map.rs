@@ -8,13 +8,15 @@ use super::viewport::Picture;
 use crate::app::action::Action;
 use crate::app::document::Document;
 use crate::render::uniforms::map_place;
-use crate::scene::{Camera, MapEdge, Scene};
+use crate::scene::{Camera, FARTHEST_M, MapEdge, Scene};
 
 /// The state of the map's window.
 #[derive(Clone, Debug, Default)]
 pub struct MapState {
     /// Whether it is there.
     pub is_open: bool,
+    /// Whether the button was pressed over the map with the brush on, and is held since.
+    is_drawing: bool,
     /// The picture of the map, while there is one.
     pub picture: Option<Picture>,
 }
@@ -108,11 +110,14 @@ pub(super) fn show(
         }
         marker(&painter, place, &on_map, scene);
         if brush.is_on {
-            paint(ui, (&response, place), (scene, &on_map), brush);
-        } else if response.clicked_by(PointerButton::Primary)
+            paint(ui, (&response, place), (scene, &on_map), (brush, &mut state.is_drawing));
+            return;
+        }
+        state.is_drawing = false;
+        if response.clicked_by(PointerButton::Primary)
             && let Some(pointer) = response.interact_pointer_pos()
         {
-            actions.extend(there(scene, &on_map, on_map.at(place, pointer)).map(Action::MoveCamera));
+            actions.extend(there(scene, &on_map, on_map.at(place, pointer)).map(Action::PlaceCamera));
         }
     });
     state.is_open = is_open;
@@ -128,8 +133,8 @@ fn there(scene: &Scene, on_map: &OnMap, at: DVec2) -> Option<Camera> {
     let metres = on_map.per_metre.inverse() * way;
     let camera = &scene.camera;
     let moved = Camera {
-        east_m: (f64::from(camera.east_m) + metres.x) as f32,
-        south_m: (f64::from(camera.south_m) + metres.y) as f32,
+        east_m: ((f64::from(camera.east_m) + metres.x) as f32).clamp(-FARTHEST_M, FARTHEST_M),
+        south_m: ((f64::from(camera.south_m) + metres.y) as f32).clamp(-FARTHEST_M, FARTHEST_M),
         ..camera.clone()
     };
     metres.is_finite().then_some(moved)
@@ -151,13 +156,19 @@ fn marker(painter: &egui::Painter, place: Rect, on_map: &OnMap, scene: &Scene) {
 
 /// Takes what the brush does here, and draws its edge.
 #[allow(clippy::cast_possible_truncation, reason = "places on the map")]
-fn paint(ui: &Ui, (response, place): (&Response, Rect), (scene, on_map): (&Scene, &OnMap), brush: &mut PaintState) {
+fn paint(
+    ui: &Ui,
+    (response, place): (&Response, Rect),
+    (scene, on_map): (&Scene, &OnMap),
+    (brush, is_drawing): (&mut PaintState, &mut bool),
+) {
     if response.hovered() {
         ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
     }
-    let begins = response.contains_pointer() && ui.input(|input| input.pointer.primary_pressed());
-    let is_drawing = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_down());
-    if let Some(pointer) = response.interact_pointer_pos().filter(|_| begins || is_drawing) {
+    let (is_down, pressed) = ui.input(|input| (input.pointer.primary_down(), input.pointer.primary_pressed()));
+    let begins = pressed && response.contains_pointer();
+    *is_drawing = is_down && (*is_drawing || begins);
+    if let Some(pointer) = response.interact_pointer_pos().filter(|_| begins || *is_drawing) {
         let at = on_map.at(place, pointer).to_array().map(|edges| edges as f32);
         let touch = Touch { at, begins, is_on_map: true };
         if brush.touches.last() != Some(&touch) {
@@ -194,5 +205,16 @@ mod tests {
                 assert!(off < 1e-4, "{edge:?}: {} is not {at:?}", moved.eye);
             }
         }
+    }
+
+    #[test]
+    fn no_click_takes_the_camera_where_no_preset_may_have_it() {
+        let mut scene = Scene::default();
+        scene.weather.size_m = 500_000.0;
+        scene.layers[0].map_scale = 20.0;
+        scene.camera.east_m = -900_000.0;
+        let on_map = OnMap::new(&scene, 0.0).expect("the sky has a map");
+        scene.camera = there(&scene, &on_map, on_map.corner).expect("a place");
+        assert!(scene.camera.east_m.abs() == FARTHEST_M && scene.problems().is_empty(), "{:?}", scene.camera);
     }
 }

@@ -121,7 +121,7 @@ fn no_cloud_stands_where_the_map_promises_clear_air() {
 }
 
 #[test]
-fn half_of_the_clear_air_between_fair_weather_clouds_is_crossed_at_once() {
+fn most_of_the_clear_air_between_fair_weather_clouds_is_crossed_at_once() {
     let found = BUILTINS.iter().find(|builtin| builtin.name == "fair_weather").expect("a built-in sky");
     let scene = found.preset().expect("it is sound").scene;
     let layer = &scene.layers[0];

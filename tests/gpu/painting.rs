@@ -353,13 +353,13 @@ fn the_map_from_above_is_the_map_that_clouds_stand_on() {
         scene.weather.coverage = coverage;
         let texels = map(&mut renderer, &scene).rgba;
         let frame = frame(&scene, &quality, [32, 18], Output::Display);
-        let picture = loop {
-            // Its shader is compiled on another thread.
-            if let Some(picture) = renderer.map_view(&frame).expect("it can be drawn") {
-                break picture.clone();
-            }
+        // Its shader is compiled on another thread.
+        let mut drawn = (0..2000).filter_map(|_| {
             std::thread::sleep(std::time::Duration::from_millis(5));
-        };
+            renderer.map_view(&frame).expect("it can be drawn").cloned()
+        });
+        let picture = drawn.next().expect("it is drawn in the end");
+        drop(drawn);
         let (size, rgba8) = renderer.rgba8_of(&picture).expect("it can be read");
         assert_eq!(size, [512, 512]);
         let is_clear = |texel: usize| rgba8[4 * texel] <= 34;
@@ -378,7 +378,10 @@ fn the_map_from_above_is_the_map_that_clouds_stand_on() {
         let layer = &scene.layers[0];
         let mut random = Random::new(31);
         let mut looked = 0;
-        while looked < 60 {
+        for _ in 0..20_000 {
+            if looked == 60 {
+                break;
+            }
             let place = [random.between(-9e3, 9e3), 0.5 * (layer.base_m + layer.top_m), random.between(-9e3, 9e3)];
             let at = map_place(&scene, layer, place.map(f64::from), 0.0);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "indices of texels")]
@@ -388,10 +391,14 @@ fn the_map_from_above_is_the_map_that_clouds_stand_on() {
             if !around.iter().all(|[dx, dy]| is_clear((y + dy) % 512 * 512 + (x + dx) % 512)) {
                 continue;
             }
-            let Some(probe) = renderer.probe(&frame, place).expect("it can be looked at") else { continue };
+            let Some(probe) = renderer.probe(&frame, place).expect("it can be looked at") else {
+                std::thread::sleep(std::time::Duration::from_millis(1));
+                continue;
+            };
             looked += 1;
             assert_eq!(probe.extinction_per_m, 0.0, "the map is clear over {place:?}");
         }
+        assert_eq!(looked, 60, "places in clear air");
     }
     assert!(clouded[0] > 10_000 && clouded[1] > clouded[0] + 20_000, "{clouded:?} texels");
     scene.weather.coverage = 0.0;

@@ -75,7 +75,8 @@ impl App {
     }
 }
 
-/// A stroke that begins where the picture or the map was touched; nothing while shaders are compiled.
+/// A stroke that begins where the picture or the map was touched; nothing while shaders are compiled that tell how high the
+/// picture was.
 fn begun(
     viewport: &mut Viewport,
     (scene, time_secs): (&Scene, f64),
@@ -94,7 +95,8 @@ fn begun(
             towards => towards.and_then(|towards| stroke.place(scene, towards, time_secs)),
         };
         let place = place.ok_or_else(|| BrushError::Clear.to_string())?;
-        let cloud = viewport.whole_cloud(stroke.layer(), place).map_err(|error| error.to_string())?;
+        let cloud =
+            viewport.whole_cloud((scene, time_secs), stroke.layer(), place).map_err(|error| error.to_string())?;
         let cloud = cloud.ok_or_else(|| BrushError::Clear.to_string())?;
         stroke.take_whole(&cloud, (place, brush.strength), scene.weather.edge == MapEdge::Repeat);
     }
