@@ -2,9 +2,12 @@
 
 use std::path::PathBuf;
 
+use glam::{DMat2, DVec2};
+
 use super::action::Action;
 use super::history::{History, Scope, State, Views};
-use crate::scene::{Animation, Frame, Output, Preset, Quality, QualityLevel, SPEED_RANGE, SunPlacement};
+use crate::render::uniforms::map_place;
+use crate::scene::{Animation, Frame, Output, Preset, Quality, QualityLevel, SPEED_RANGE, Scene, SunPlacement};
 
 /// The sky being edited, how it is computed, and where it came from.
 #[derive(Clone, Debug)]
@@ -342,6 +345,28 @@ impl Document {
         sun.elevation_deg = (sun.elevation_deg + elevation_deg).clamp(-90.0, 90.0);
         sun.azimuth_deg = (sun.azimuth_deg + azimuth_deg).rem_euclid(360.0);
     }
+}
+
+/// Where the eye is on the weather map, for the panels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyeOnMap {
+    /// Edges of the map from its corner.
+    pub eye: DVec2,
+    /// How far a metre to the east and one to the south go.
+    pub per_metre: DMat2,
+}
+
+/// The same of a scene at a time, as the layer reads the map that stands on it; `None` where none does.
+pub fn eye_on_map(scene: &Scene, time_secs: f64) -> Option<EyeOnMap> {
+    let (_, layer) = scene.layer_on_map()?;
+    let camera = &scene.camera;
+    let [east, south] = [f64::from(camera.east_m), f64::from(camera.south_m)];
+    let place = |by: DVec2| map_place(scene, layer, [east + by.x, f64::from(layer.base_m), south + by.y], time_secs);
+    let eye = place(DVec2::ZERO);
+    // The map is straight: far enough apart for single precision.
+    let far = 1e4;
+    let [x, y] = [DVec2::X, DVec2::Y].map(|axis| (place(axis * far) - eye) / far);
+    Some(EyeOnMap { eye, per_metre: DMat2::from_cols(x, y) })
 }
 
 #[cfg(test)]

@@ -6,8 +6,7 @@ use glam::{DMat2, DVec2};
 use super::paint::{PaintState, Touch};
 use super::viewport::Picture;
 use crate::app::action::Action;
-use crate::app::document::Document;
-use crate::render::uniforms::map_place;
+use crate::app::document::{Document, EyeOnMap, eye_on_map};
 use crate::scene::{Camera, FARTHEST_M, MapEdge, Scene};
 
 /// The state of the map's window.
@@ -32,19 +31,11 @@ struct OnMap {
 
 impl OnMap {
     fn new(scene: &Scene, time_secs: f64) -> Option<Self> {
-        let (_, layer) = scene.layer_on_map()?;
-        let camera = &scene.camera;
-        let [east, south] = [f64::from(camera.east_m), f64::from(camera.south_m)];
-        let place =
-            |by: DVec2| map_place(scene, layer, [east + by.x, f64::from(layer.base_m), south + by.y], time_secs);
-        let eye = place(DVec2::ZERO);
-        // The map is straight: far enough apart for single precision.
-        let far = 1e4;
-        let [x, y] = [DVec2::X, DVec2::Y].map(|axis| (place(axis * far) - eye) / far);
+        let EyeOnMap { eye, per_metre } = eye_on_map(scene, time_secs)?;
         let is_endless = scene.weather.edge == MapEdge::Repeat;
         let eye = if is_endless { eye - eye.floor() } else { eye };
         let corner = if is_endless { eye - 0.5 } else { DVec2::ZERO };
-        Some(Self { eye, per_metre: DMat2::from_cols(x, y), corner })
+        Some(Self { eye, per_metre, corner })
     }
 
     /// What a point of the window shows.
