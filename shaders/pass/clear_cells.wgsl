@@ -1,6 +1,5 @@
 // Where layers may have cloud: 0 in cells of the weather map and of heights that may hold some, far in all others; a
-// channel for each layer. From this pass/clear_row.wgsl and pass/clear_spread.wgsl
-// find how far it is to cloud.
+// channel for each layer. From this pass/clear_row.wgsl and pass/clear_spread.wgsl find how far it is to cloud.
 #if AUTOMATON
 #import "pass/automaton_greatest.wgsl"
 #endif

@@ -72,7 +72,6 @@ enum Does {
 impl UnderWay {
     /// Begins a stroke or a flow at a height in a scene. With its first dab a stroke gets a painted layer on top of the map if there
     /// is none, a flow always one of its own.
-    #[allow(clippy::cast_possible_truncation, reason = "a constant below 1")]
     pub(super) fn begin(scene: &Scene, height_m: Option<f32>, brush: &PaintState) -> Result<Self, BrushError> {
         let layers: Vec<_> = scene.numbered_layers().filter(|(_, layer)| layer.reads_map()).collect();
         let at_height = |height: f32| layers.iter().find(|(_, layer)| (layer.base_m..=layer.top_m).contains(&height));
@@ -88,33 +87,11 @@ impl UnderWay {
         if map >= MAX_LAYERS {
             return Err(BrushError::Full);
         }
-        if brush.stirs {
-            let does = Does::Flow { layer: Box::new(flow(brush, scale_m)), is_laid: false };
-            return Ok(Self {
-                height_m: height,
-                layer,
-                map,
-                does,
-                is_whole: false,
-                offset: DVec2::ZERO,
-                last: None,
-                touched: None,
-                spacing: SPACING,
-            });
-        }
-        // One pass goes so far, but what is moved follows each dab.
-        let passes = if brush.brush == Brush::Move { 1.0 } else { SPACING as f32 };
-        let strength = 1.0 - (1.0 - brush.strength.clamp(0.0, 1.0)).powf(passes);
-        let begun = Box::new(Stroke {
-            brush: brush.brush,
-            kind: brush.kind,
-            radius: (brush.radius_m / scale_m).clamp(1e-3, 0.5),
-            strength,
-            softness: brush.softness,
-            amount: brush.amount,
-            dabs: Vec::new(),
-        });
-        let does = Does::Stroke { begun, count: 0 };
+        let does = if brush.stirs {
+            Does::Flow { layer: Box::new(flow(brush, scale_m)), is_laid: false }
+        } else {
+            Does::Stroke { begun: Box::new(stroke(brush, scale_m)), count: 0 }
+        };
         Ok(Self {
             height_m: height,
             layer,
@@ -295,6 +272,22 @@ fn lay(maps: &mut Vec<MapLayer>, map: usize, begun: &Stroke) -> Result<usize, Br
     let Some(strokes) = maps.get_mut(map).map(|map| &mut map.strokes.0) else { return Ok(0) };
     strokes.push(Arc::new(begun.clone()));
     Ok(strokes.len())
+}
+
+/// A stroke that is about to be painted.
+#[allow(clippy::cast_possible_truncation, reason = "a constant below 1")]
+fn stroke(brush: &PaintState, scale_m: f32) -> Stroke {
+    // One pass goes so far, but what is moved follows each dab.
+    let passes = if brush.brush == Brush::Move { 1.0 } else { SPACING as f32 };
+    Stroke {
+        brush: brush.brush,
+        kind: brush.kind,
+        radius: (brush.radius_m / scale_m).clamp(1e-3, 0.5),
+        strength: 1.0 - (1.0 - brush.strength.clamp(0.0, 1.0)).powf(passes),
+        softness: brush.softness,
+        amount: brush.amount,
+        dabs: Vec::new(),
+    }
 }
 
 /// A flow that is about to be drawn.

@@ -30,8 +30,7 @@ pub fn programs() -> [ProgramKey; 1] {
 
 /// How a layer of all reads the map, if it has cloud and does.
 fn reading(frame: &Frame<'_>, layer: usize) -> Option<MapViewUniforms> {
-    let mut visible = frame.scene.numbered_layers();
-    let (at, (_, of)) = visible.by_ref().enumerate().find(|(_, (index, _))| *index == layer)?;
+    let (at, (_, of)) = frame.scene.numbered_layers().enumerate().find(|(_, (index, _))| *index == layer)?;
     let uniforms = field_uniforms(frame).layers[at];
     of.reads_map().then(|| MapViewUniforms {
         form: uniforms.form,
@@ -42,9 +41,9 @@ fn reading(frame: &Frame<'_>, layer: usize) -> Option<MapViewUniforms> {
 }
 
 impl Renderer {
-    /// The weather map of the last picture as the frame's [`Scene::layer_on_map`](crate::scene::Scene::layer_on_map) reads it, coverage included but for that of a
-    /// front that comes: `Rgba8Unorm`, north upwards. The one before while a picture is under way or the shader is compiled;
-    /// `None` where there is none.
+    /// The weather map of the last picture as the frame's [`Scene::layer_on_map`](crate::scene::Scene::layer_on_map) reads
+    /// it, coverage included but for that of a front that comes: `Rgba8Unorm`, north upwards. The one before while a picture is
+    /// under way or the shader is compiled; `None` where there is none.
     ///
     /// # Errors
     /// [`RenderError::Gpu`] if the device fails.

@@ -90,9 +90,10 @@ fn begun(
     }
     let mut stroke = UnderWay::begin(scene, height_m, brush).map_err(|error| error.to_string())?;
     if brush.whole && !brush.stirs {
-        let place = match viewport.towards(touch.at) {
-            _ if touch.is_on_map => Some(DVec2::from_array(touch.at.map(f64::from))),
-            towards => towards.and_then(|towards| stroke.place(scene, towards, time_secs)),
+        let place = if touch.is_on_map {
+            Some(DVec2::from_array(touch.at.map(f64::from)))
+        } else {
+            viewport.towards(touch.at).and_then(|towards| stroke.place(scene, towards, time_secs))
         };
         let place = place.ok_or_else(|| BrushError::Clear.to_string())?;
         let cloud =
