@@ -16,42 +16,54 @@ override AXIS: u32 = 1u;
 @group(2) @binding(0) var ways_before: texture_3d<f32>;
 @group(2) @binding(1) var ways_out: texture_storage_3d<rgba16float, write>;
 
+// Cells in a row along the axis that look round together, so that each place is read once for all of them: reading is what
+// this costs.
+const TOGETHER: i32 = 4;
 // Half floats round, and altitude over a round planet is not quite a coordinate.
 const SAFE: f32 = 0.98;
 
-@compute @workgroup_size(4, 4, 4)
+@compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-  let here = id + vec3u(0u, 0u, band.first_row);
   let size = vec3i(textureDimensions(ways_out));
-  if (any(vec3i(here) >= size) || id.z >= band.rows) {
+  let length = size[AXIS];
+  // Invocations beside each other look along parallel ways.
+  var at = vec3i(0);
+  at.x = i32(id.x) % size.x;
+  at[3u - AXIS] = i32(id.y + band.first_row);
+  let first = i32(id.x) / size.x * TOGETHER;
+  if (first >= length || id.y >= band.rows) {
     return;
   }
   var wall = vec4f(0.0);
   // Channels without a layer ask for nothing.
-  var nearest = vec4f(0.0);
+  var far = vec4f(0.0);
   for (var i = 0u; i < LAYERS; i++) {
     let layer = scene.layers[i];
-    wall[i] = select(1.0 / layer.map_from_world.z, 1.0 / layer.per_thickness, AXIS == 1u) / f32(size[AXIS]);
-    nearest[i] = FARTHEST_M;
+    wall[i] = select(1.0 / layer.map_from_world.z, 1.0 / layer.per_thickness, AXIS == 1u) / f32(length);
+    far[i] = FARTHEST_M * FARTHEST_M;
   }
-  let reach = select(size[AXIS] / 2, size[AXIS] - 1, AXIS == 1u);
-  for (var d = 0; d <= reach; d++) {
+  var nearest = array<vec4f, TOGETHER>(far, far, far, far);
+  // First these cells themselves, then one after the other on both sides.
+  let reach = select(length / 2, length - 1, AXIS == 1u);
+  for (var d = 1 - TOGETHER / 2; d <= reach; d++) {
     let gap = f32(max(d - 1, 0)) * wall;
-    // Cells farther away are no nearer to cloud.
-    if (all(gap >= nearest)) {
+    let greatest = max(max(nearest[0], nearest[1]), max(nearest[2], nearest[3]));
+    if (d > 0 && all(gap * gap >= greatest)) {
       break;
     }
-    for (var side = -1; side <= 1; side += 2) {
-      var cell = vec3i(here);
-      cell[AXIS] += side * d;
-      if (AXIS != 1u || (cell.y >= 0 && cell.y < size.y)) {
-        let before = textureLoad(ways_before, (cell + size) % size, 0);
-        nearest = min(nearest, sqrt(before * before + gap * gap));
+    for (var side = 0; side < 2; side++) {
+      let cell = select(first - d, first + TOGETHER - 1 + d, side == 1);
+      // Above the highest and below the lowest cell these are asked again, which are nearer than they seem then.
+      at[AXIS] = select((cell + length) % length, clamp(cell, 0, length - 1), AXIS == 1u);
+      let before = textureLoad(ways_before, at, 0);
+      for (var k = 0; k < TOGETHER; k++) {
+        let apart = f32(max(abs(cell - first - k) - 1, 0)) * wall;
+        nearest[k] = min(nearest[k], before * before + apart * apart);
       }
     }
   }
-  if (AXIS == 2u) {
-    nearest *= SAFE;
+  for (var k = 0; k < TOGETHER; k++) {
+    at[AXIS] = first + k;
+    textureStore(ways_out, at, sqrt(nearest[k]) * select(1.0, SAFE, AXIS == 2u));
   }
-  textureStore(ways_out, here, nearest);
 }

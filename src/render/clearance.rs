@@ -12,6 +12,8 @@ use crate::scene::{Frame, MAX_LAYERS};
 
 /// Cells across the map, upwards through each layer, and across the map again.
 const CELLS: [u32; 3] = [256, 16, 256];
+/// Cells in a row that look round together: `TOGETHER` in `pass/clear_spread.wgsl`.
+const TOGETHER: u32 = 4;
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// What the ways depend on.
@@ -67,7 +69,7 @@ impl Clearance {
         }
         for (axis, bound) in [(1, between(&there, &back)), (2, between(&back, &there))] {
             let key = spread.clone().with_constant("AXIS", axis);
-            jobs.extend(context.banded("clear_spread", &key, &bound, Extent::solid(CELLS))?);
+            jobs.extend(context.banded("clear_spread", &key, &bound, blocks_along(axis as usize))?);
         }
         self.made = Some((from, there));
         Ok(())
@@ -105,6 +107,12 @@ fn in_place(layer: LayerUniforms) -> LayerUniforms {
         voronoi_from_world: glam::Vec4::ZERO,
         ..layer
     }
+}
+
+/// Blocks of cells along an axis, upwards or across: beside each other from west to east, one after the other along the
+/// axis, and the third axis in rows.
+fn blocks_along(axis: usize) -> Extent {
+    Extent::image([CELLS[0] * CELLS[axis] / TOGETHER, CELLS[3 - axis]])
 }
 
 /// The programs that say which cells may hold cloud, and how far it is to them, along rows and across.

@@ -7,7 +7,7 @@ use nephoscope::render::uniforms::map_place;
 use nephoscope::scene::builtin::BUILTINS;
 use nephoscope::scene::{Output, Quality};
 
-use crate::common::field::{Bound, Field, evaluated, linear_repeat, run, view_of};
+use crate::common::field::{Bound, Field, evaluated, linear_repeat, read, run, view_of};
 use crate::common::sky::{frame, renderer};
 use crate::common::slab::{FLAT, March, PRODUCT, PROFILE, SHELL, THESIS, noisy_layer, of_octaves};
 use crate::common::{Case, Random, bits3, gpu};
@@ -22,29 +22,86 @@ fn key(file: &'static str, (domain, layers): (u32, usize)) -> ProgramKey {
         .with_constant("LAYERS", u32::try_from(layers).expect("few layers"))
 }
 
-/// The ways over the baked map, made by the production passes.
-fn ways(scene: &wgpu::Buffer, layers: usize) -> Texture {
-    let [there, back] = [(); 2].map(|()| Texture::new_3d(gpu(), "ways", CELLS, (1, wgpu::TextureFormat::Rgba16Float)));
+fn ways_texture() -> Texture {
+    Texture::new_3d(gpu(), "ways", CELLS, (1, wgpu::TextureFormat::Rgba16Float))
+}
+
+/// The cells over the baked map that may hold cloud, by the production pass.
+fn cells(scene: &wgpu::Buffer, layers: usize) -> Texture {
+    let cells = ways_texture();
     let map = &Field::baked().map;
-    let scene = || ("scene", scene.as_entire_binding());
-    let bound = vec![scene(), ("weather_map", view_of(map)), ("ways_out", view_of(&there))];
+    let bound =
+        vec![("scene", scene.as_entire_binding()), ("weather_map", view_of(map)), ("ways_out", view_of(&cells))];
     run(&key("pass/clear_cells.wgsl", (FLAT, layers)), &bound, [CELLS[0], CELLS[2], 1]);
+    cells
+}
+
+/// The ways to such cells, made by the production passes.
+fn ways(scene: &wgpu::Buffer, layers: usize, cells: &Texture) -> Texture {
+    let [there, back] = [(); 2].map(|()| ways_texture());
     let spreading = |file| ProgramKey::plain(file).with_constant("LAYERS", u32::try_from(layers).expect("few layers"));
-    let between = |before, after| vec![scene(), ("ways_before", view_of(before)), ("ways_out", view_of(after))];
-    for (is_back, bound) in [(0, between(&there, &back)), (1, between(&back, &there))] {
+    let between = |before, after| {
+        vec![("scene", scene.as_entire_binding()), ("ways_before", view_of(before)), ("ways_out", view_of(after))]
+    };
+    for (is_back, bound) in [(0, between(cells, &back)), (1, between(&back, &there))] {
         let key = spreading("pass/clear_row.wgsl").with_constant("BACK", is_back);
         run(&key, &bound, [CELLS[1], CELLS[2], 1]);
     }
-    for (axis, bound) in [(1, between(&there, &back)), (2, between(&back, &there))] {
-        run(&spreading("pass/clear_spread.wgsl").with_constant("AXIS", axis), &bound, CELLS);
+    // As many cells look round together as the shader says.
+    for (axis, bound, extent) in [
+        (1, between(&there, &back), [CELLS[0] * CELLS[1] / 4, CELLS[2], 1]),
+        (2, between(&back, &there), [CELLS[0] * CELLS[2] / 4, CELLS[1], 1]),
+    ] {
+        run(&spreading("pass/clear_spread.wgsl").with_constant("AXIS", axis), &bound, extent);
     }
     there
+}
+
+#[test]
+fn ways_are_the_gaps_to_the_nearest_cell_that_may_hold_cloud() {
+    for coverage in [0.2, 0.4] {
+        let mut march = March::slab(3000.0, 0.04, Vec3::Y);
+        march.scene.layers[0] = noisy_layer(PROFILE, 600.0, 2800.0, coverage);
+        march.scene.layers[1] = noisy_layer(THESIS, 900.0, 2000.0, coverage);
+        let scene = gpu().uniform("scene", bytemuck::bytes_of(&march.scene));
+        let cells = cells(&scene, 2);
+        let [cloud, found] = [read(&cells), read(&ways(&scene, 2, &cells))];
+        let at = |index: usize| {
+            let [x, y, _] = CELLS.map(|count| count as usize);
+            [index % x, index / x % y, index / (x * y)]
+        };
+        let mut random = Random::new(7);
+        for layer in 0..2 {
+            let held: Vec<[usize; 3]> = (0..cloud.len()).filter(|i| cloud[*i][layer] == 0.0).map(at).collect();
+            assert!((1..cloud.len() / 2).contains(&held.len()), "{} of {} cells", held.len(), cloud.len());
+            let slot = &march.scene.layers[layer];
+            let across = 1.0 / (slot.map_from_world.z * CELLS[0] as f32);
+            let walls = [across, 1.0 / (slot.per_thickness * CELLS[1] as f32), across];
+            for _ in 0..100 {
+                let index = random.bits() as usize % found.len();
+                let here = at(index);
+                let gap = |cell: &[usize; 3]| {
+                    let squares = [0, 1, 2].map(|axis| {
+                        let apart = here[axis].abs_diff(cell[axis]);
+                        // Across the map it repeats.
+                        let apart = if axis == 1 { apart } else { apart.min(CELLS[axis] as usize - apart) };
+                        (apart.saturating_sub(1) as f32 * walls[axis]).powi(2)
+                    });
+                    squares.iter().sum::<f32>()
+                };
+                let expected = 0.98 * held.iter().map(gap).fold(f32::INFINITY, f32::min).sqrt();
+                let way = found[index][layer];
+                let is_near = (way - expected).abs() <= 2e-3 * expected;
+                assert!(is_near, "layer {layer}, cell {here:?}: a way of {way} m, not {expected}");
+            }
+        }
+    }
 }
 
 /// Results of `test/eval_clear.wgsl`.
 fn evaluate(march: &March, (domain, layers): (u32, usize), cases: &[Case]) -> Vec<[f32; 4]> {
     let scene = gpu().uniform("scene", bytemuck::bytes_of(&march.scene));
-    let ways = ways(&scene, layers);
+    let ways = ways(&scene, layers, &cells(&scene, layers));
     let mut read: Bound<'_> = vec![
         ("scene", scene.as_entire_binding()),
         ("weather_map", view_of(&Field::baked().map)),
