@@ -8,7 +8,7 @@ use crate::scene::{
     Scene, UpdateFraction,
 };
 
-const SIZE: [u32; 2] = [32, 18];
+pub(super) const SIZE: [u32; 2] = [32, 18];
 
 /// What a case found: what was expected, what was measured, and whether that will do.
 pub(super) struct Finding {
