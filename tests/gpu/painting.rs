@@ -6,7 +6,8 @@ use nephoscope::render::Renderer;
 use nephoscope::render::tables::{Table, TableKind};
 use nephoscope::render::uniforms::map_place;
 use nephoscope::scene::{
-    Brush, CloudKind, MapBlend, MapEdge, MapLayer, MapSource, Output, Quality, Scene, Stroke, Strokes,
+    Brush, CloudKind, DensityModel, Frame, MapBlend, MapEdge, MapLayer, MapSource, Output, Quality, Scene, Stroke,
+    Strokes,
 };
 
 use crate::common::sky::{frame, table};
@@ -339,6 +340,53 @@ fn a_place_in_the_sky_is_the_place_on_the_map_that_it_shows() {
     assert!((held - 0.5).length() < 1e-9, "{held}");
 }
 
+/// The map from above, as the screen shows it.
+fn from_above(renderer: &mut Renderer, frame: &Frame<'_>) -> Vec<u8> {
+    // Its shader is compiled on another thread.
+    let mut drawn = (0..2000).filter_map(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        renderer.map_view(frame).expect("it can be drawn").cloned()
+    });
+    let picture = drawn.next().expect("it is drawn in the end");
+    drop(drawn);
+    let (size, rgba8) = renderer.rgba8_of(&picture).expect("it can be read");
+    assert_eq!(size, [512, 512]);
+    rgba8
+}
+
+fn is_clear_on(rgba8: &[u8], texel: usize) -> bool {
+    rgba8[4 * texel] <= 34
+}
+
+/// How many texels have cloud on the map from above, which are those whose field is above a threshold.
+fn clouded_above(rgba8: &[u8], texels: &[[f32; 4]], field: fn(&[f32; 4]) -> f32) -> usize {
+    let fields = texels.iter().map(field).enumerate();
+    let (clear, cloudy): (Vec<_>, Vec<_>) = fields.partition(|(index, _)| is_clear_on(rgba8, *index));
+    let fullest = clear.iter().map(|(_, field)| *field).fold(0.0, f32::max);
+    let emptiest = cloudy.iter().map(|(_, field)| *field).fold(f32::INFINITY, f32::min);
+    assert!(fullest <= emptiest + 1e-3, "clear up to {fullest}, cloud from {emptiest}");
+    cloudy.len()
+}
+
+#[test]
+fn on_the_map_from_above_of_a_weather_texture_coverage_alone_is_cloud() {
+    // Stratus is painted into the channel that a weather texture has its height in.
+    let (kind, radius, strength, softness, amount) = (CloudKind::Stratus, 0.2, 1.0, 0.5, 1.0);
+    let stroke = Stroke { brush: Brush::Add, kind, radius, strength, softness, amount, dabs: vec![[0.7, 0.7]] };
+    let mut scene = sky(vec![stroke], true);
+    scene.layers[0].model = DensityModel::Texture;
+    let mut renderer = renderer();
+    let texels = map(&mut renderer, &scene).rgba;
+    let quality = Quality::default();
+    let rgba8 = from_above(&mut renderer, &frame(&scene, &quality, [32, 18], Output::Display));
+    let clouded = clouded_above(&rgba8, &texels, |texel| texel[0]);
+    assert!((10_000..texels.len() - 10_000).contains(&clouded), "{clouded} texels");
+    let least = texels.iter().enumerate().filter(|(index, _)| !is_clear_on(&rgba8, *index));
+    let least = least.map(|(_, texel)| texel[0]).fold(f32::INFINITY, f32::min);
+    let others = texels.iter().filter(|texel| texel[0] < least && texel[0] + texel[1] + texel[2] > least + 1e-3);
+    assert!(others.count() > 1000, "where height alone is high is no cloud, or the sum of the channels would do");
+}
+
 #[test]
 fn the_map_from_above_is_the_map_that_clouds_stand_on() {
     let stroke = |brush, at| {
@@ -353,23 +401,10 @@ fn the_map_from_above_is_the_map_that_clouds_stand_on() {
         scene.weather.coverage = coverage;
         let texels = map(&mut renderer, &scene).rgba;
         let frame = frame(&scene, &quality, [32, 18], Output::Display);
-        // Its shader is compiled on another thread.
-        let mut drawn = (0..2000).filter_map(|_| {
-            std::thread::sleep(std::time::Duration::from_millis(5));
-            renderer.map_view(&frame).expect("it can be drawn").cloned()
-        });
-        let picture = drawn.next().expect("it is drawn in the end");
-        drop(drawn);
-        let (size, rgba8) = renderer.rgba8_of(&picture).expect("it can be read");
-        assert_eq!(size, [512, 512]);
-        let is_clear = |texel: usize| rgba8[4 * texel] <= 34;
+        let rgba8 = from_above(&mut renderer, &frame);
+        let is_clear = |texel: usize| is_clear_on(&rgba8, texel);
         // Coverage is a threshold of the map's field.
-        let fields = texels.iter().map(|texel| texel[0] + texel[1] + texel[2]).enumerate();
-        let (clear, cloudy): (Vec<_>, Vec<_>) = fields.partition(|(index, _)| is_clear(*index));
-        let fullest = clear.iter().map(|(_, field)| *field).fold(0.0, f32::max);
-        let emptiest = cloudy.iter().map(|(_, field)| *field).fold(f32::INFINITY, f32::min);
-        assert!(fullest <= emptiest + 1e-3, "clear up to {fullest}, cloud from {emptiest}");
-        clouded.push(cloudy.len());
+        clouded.push(clouded_above(&rgba8, &texels, |texel| texel[0] + texel[1] + texel[2]));
         // Stratus was painted, a bluer grey than the cumulus of the map.
         let painted = &rgba8[4 * (358 * 512 + 358)..][..3];
         assert!(painted[2] > painted[0] + 20, "{painted:?}");
