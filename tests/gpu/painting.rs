@@ -350,7 +350,7 @@ fn from_above(renderer: &mut Renderer, frame: &Frame<'_>) -> Vec<u8> {
     let picture = drawn.next().expect("it is drawn in the end");
     drop(drawn);
     let (size, rgba8) = renderer.rgba8_of(&picture).expect("it can be read");
-    assert_eq!(size, [512, 512]);
+    assert_eq!(size, [512, 512], "as many pixels as texels");
     rgba8
 }
 
