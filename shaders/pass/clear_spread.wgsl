@@ -17,7 +17,7 @@ override AXIS: u32 = 1u;
 @group(2) @binding(1) var ways_out: texture_storage_3d<rgba16float, write>;
 
 // Cells in a row along the axis that look round together, so that each place is read once for all of them: reading is what
-// this costs.
+// this costs. Four are written out below, and lines have a multiple of that.
 const TOGETHER: i32 = 4;
 // Half floats round, and altitude over a round planet is not quite a coordinate.
 const SAFE: f32 = 0.98;
@@ -26,12 +26,13 @@ const SAFE: f32 = 0.98;
 fn main(@builtin(global_invocation_id) id: vec3u) {
   let size = vec3i(textureDimensions(ways_out));
   let length = size[AXIS];
-  // Invocations beside each other look along parallel ways.
+  // Invocations beside each other look along parallel ways. Rows are those of the third axis, once for each block.
+  let row = i32(id.y + band.first_row);
   var at = vec3i(0);
-  at.x = i32(id.x) % size.x;
-  at[3u - AXIS] = i32(id.y + band.first_row);
-  let first = i32(id.x) / size.x * TOGETHER;
-  if (first >= length || id.y >= band.rows) {
+  at.x = i32(id.x);
+  at[3u - AXIS] = row % size[3u - AXIS];
+  let first = row / size[3u - AXIS] * TOGETHER;
+  if (at.x >= size.x || first >= length || id.y >= band.rows) {
     return;
   }
   var wall = vec4f(0.0);
@@ -48,6 +49,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
   for (var d = 1 - TOGETHER / 2; d <= reach; d++) {
     let gap = f32(max(d - 1, 0)) * wall;
     let greatest = max(max(nearest[0], nearest[1]), max(nearest[2], nearest[3]));
+    // Cells farther away are no nearer to cloud for any of these.
     if (d > 0 && all(gap * gap >= greatest)) {
       break;
     }

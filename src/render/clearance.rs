@@ -109,10 +109,11 @@ fn in_place(layer: LayerUniforms) -> LayerUniforms {
     }
 }
 
-/// Blocks of cells along an axis, upwards or across: beside each other from west to east, one after the other along the
-/// axis, and the third axis in rows.
+/// Blocks of cells along an axis, upwards or across: from west to east, in rows of the third axis for each block along the
+/// axis, so that bands of rows are alike.
 fn blocks_along(axis: usize) -> Extent {
-    Extent::image([CELLS[0] * CELLS[axis] / TOGETHER, CELLS[3 - axis]])
+    const { assert!(CELLS[1].is_multiple_of(TOGETHER) && CELLS[2].is_multiple_of(TOGETHER), "lines are whole blocks") };
+    Extent::image([CELLS[0], CELLS[3 - axis] * (CELLS[axis] / TOGETHER)])
 }
 
 /// The programs that say which cells may hold cloud, and how far it is to them, along rows and across.

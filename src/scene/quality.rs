@@ -47,7 +47,7 @@ params! {
     pub struct Quality ("Quality") {
         /// Most steps along a view ray; if steps are not equal, the second half of them grow where they would not take all of its way.
         view_steps: u32 = 160, 4..=1024, None;
-        /// Length of the first step inside cloud; up to twice as long where a layer is thicker than 1.2 km and three and a half times in the tallest, longer in deep, soft sheets, a little shorter where a layer is flatter, and a little longer in very thin cloud.
+        /// Length of the first step inside cloud; up to twice as long where a layer is thicker than 1.2 km, longer in deep, soft sheets, a little shorter where a layer is flatter, and a little longer in very thin cloud.
         step_m: f32 = 45.0, 1.0..=1000.0, Metres, logarithmic;
         /// Growth of the step with distance: metres more per metre.
         step_growth: f32 = 0.0038, 0.0..=0.1, None;

@@ -6,7 +6,7 @@ use nephoscope::render::Renderer;
 use nephoscope::render::tables::{Table, TableKind};
 use nephoscope::render::uniforms::map_place;
 use nephoscope::scene::builtin::BUILTINS;
-use nephoscope::scene::{CloudLayer, Output, Quality, Scene};
+use nephoscope::scene::{CloudLayer, DomainKind, Output, Quality, Scene};
 
 use crate::common::field::{Bound, Field, evaluated, linear_repeat, read, run, view_of};
 use crate::common::sky::{frame, renderer};
@@ -48,36 +48,56 @@ fn ways(scene: &wgpu::Buffer, layers: usize, cells: &Texture) -> Texture {
         let key = spreading("pass/clear_row.wgsl").with_constant("BACK", is_back);
         run(&key, &bound, [CELLS[1], CELLS[2], 1]);
     }
-    // As many cells look round together as the shader says.
-    for (axis, bound, extent) in [
-        (1, between(&there, &back), [CELLS[0] * CELLS[1] / 4, CELLS[2], 1]),
-        (2, between(&back, &there), [CELLS[0] * CELLS[2] / 4, CELLS[1], 1]),
-    ] {
-        run(&spreading("pass/clear_spread.wgsl").with_constant("AXIS", axis), &bound, extent);
+    for (axis, bound) in [(1, between(&there, &back)), (2, between(&back, &there))] {
+        // Four cells look round together.
+        let rows = CELLS[1] * CELLS[2] / 4;
+        run(&spreading("pass/clear_spread.wgsl").with_constant("AXIS", axis), &bound, [CELLS[0], rows, 1]);
     }
     there
 }
 
+/// Cells of two layers of which so many may hold cloud, anywhere.
+fn few_cells(random: &mut Random, counts: [usize; 2]) -> Texture {
+    /// 60,000 as a half float, the farthest way.
+    const FAR: u16 = 0x7b53;
+    let mut halves = vec![[FAR, FAR, 0, 0]; CELLS.iter().product::<u32>() as usize];
+    for (layer, count) in counts.into_iter().enumerate() {
+        for _ in 0..count {
+            let index = random.bits() as usize % halves.len();
+            halves[index][layer] = 0;
+        }
+    }
+    let cells = ways_texture();
+    gpu().queue.write_texture(
+        cells.texture.as_image_copy(),
+        bytemuck::cast_slice(&halves),
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(CELLS[0] * 8), rows_per_image: Some(CELLS[1]) },
+        cells.texture.size(),
+    );
+    cells
+}
+
 #[test]
 fn ways_are_the_gaps_to_the_nearest_cell_that_may_hold_cloud() {
-    for coverage in [0.2, 0.4] {
-        let mut march = March::slab(3000.0, 0.04, Vec3::Y);
-        march.scene.layers[0] = noisy_layer(PROFILE, 600.0, 2800.0, coverage);
-        march.scene.layers[1] = noisy_layer(THESIS, 900.0, 2000.0, coverage);
-        let scene = gpu().uniform("scene", bytemuck::bytes_of(&march.scene));
-        let cells = cells(&scene, 2);
+    let mut march = March::slab(3000.0, 0.04, Vec3::Y);
+    march.scene.layers[0] = noisy_layer(PROFILE, 600.0, 2800.0, 0.4);
+    march.scene.layers[1] = noisy_layer(THESIS, 900.0, 2000.0, 0.4);
+    let scene = gpu().uniform("scene", bytemuck::bytes_of(&march.scene));
+    let mut random = Random::new(7);
+    let mut over_the_end = 0;
+    for cells in [cells(&scene, 2), few_cells(&mut random, [3, 40])] {
         let [cloud, found] = [read(&cells), read(&ways(&scene, 2, &cells))];
         let at = |index: usize| {
             let [x, y, _] = CELLS.map(|count| count as usize);
             [index % x, index / x % y, index / (x * y)]
         };
-        let mut random = Random::new(7);
         for layer in 0..2 {
             let held: Vec<[usize; 3]> = (0..cloud.len()).filter(|i| cloud[*i][layer] == 0.0).map(at).collect();
             assert!((1..cloud.len() / 2).contains(&held.len()), "{} of {} cells", held.len(), cloud.len());
             let slot = &march.scene.layers[layer];
             let across = 1.0 / (slot.map_from_world.z * CELLS[0] as f32);
             let walls = [across, 1.0 / (slot.per_thickness * CELLS[1] as f32), across];
+            let mut far = 0;
             for _ in 0..100 {
                 let index = random.bits() as usize % found.len();
                 let here = at(index);
@@ -90,13 +110,18 @@ fn ways_are_the_gaps_to_the_nearest_cell_that_may_hold_cloud() {
                     });
                     squares.iter().sum::<f32>()
                 };
-                let expected = 0.98 * held.iter().map(gap).fold(f32::INFINITY, f32::min).sqrt();
+                let nearest = held.iter().min_by(|a, b| gap(a).total_cmp(&gap(b))).expect("some are held");
+                over_the_end += usize::from(here[2].abs_diff(nearest[2]) > CELLS[2] as usize / 2);
+                let expected = 0.98 * gap(nearest).sqrt();
                 let way = found[index][layer];
                 let is_near = (way - expected).abs() <= 2e-3 * expected;
                 assert!(is_near, "layer {layer}, cell {here:?}: a way of {way} m, not {expected}");
+                far += usize::from(way > 0.0);
             }
+            assert!(far > 30, "{far} of 100 cells have a way");
         }
     }
+    assert!(over_the_end > 10, "{over_the_end} ways lead over the end of the map");
 }
 
 /// Results of `test/eval_clear.wgsl`.
@@ -188,9 +213,12 @@ fn way_at(ways: &Table, scene: &Scene, layer: &CloudLayer, place: [f32; 3]) -> f
     ways.rgba[((z * CELLS[1] + y) * CELLS[0] + x) as usize][0]
 }
 
+/// A built-in sky over a flat world, where places have their altitude.
 fn builtin(name: &str) -> Scene {
     let found = BUILTINS.iter().find(|builtin| builtin.name == name).expect("a built-in sky");
-    found.preset().expect("it is sound").scene
+    let mut scene = found.preset().expect("it is sound").scene;
+    scene.domain.kind = DomainKind::Flat;
+    scene
 }
 
 /// Places in the first layer and over the weather map, with their extinction in 1/m.
@@ -198,17 +226,21 @@ fn places(scene: &Scene, renderer: &mut Renderer, count: usize) -> Vec<([f32; 3]
     let (layer, size_m) = (&scene.layers[0], scene.weather.size_m);
     let quality = Quality::default();
     let frame = frame(scene, &quality, [32, 18], Output::Display);
+    // Its shader is compiled on another thread.
+    let is_ready = (0..2000).any(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+        renderer.probe(&frame, [0.0; 3]).expect("it can be looked at").is_some()
+    });
+    assert!(is_ready, "the probe is compiled in the end");
     let mut random = Random::new(91);
-    let mut found = Vec::new();
-    while found.len() < count {
-        let place =
-            [random.between(0.0, size_m), random.between(layer.base_m, layer.top_m), random.between(0.0, size_m)];
-        // Its shader is compiled on another thread.
-        if let Some(probe) = renderer.probe(&frame, place).expect("it can be looked at") {
-            found.push((place, probe.extinction_per_m));
-        }
-    }
-    found
+    let mut place =
+        || [random.between(0.0, size_m), random.between(layer.base_m, layer.top_m), random.between(0.0, size_m)];
+    let places: Vec<[f32; 3]> = (0..count).map(|_| place()).collect();
+    let looked = places.into_iter().map(|place| {
+        let probe = renderer.probe(&frame, place).expect("it can be looked at").expect("it is compiled");
+        (place, probe.extinction_per_m)
+    });
+    looked.collect()
 }
 
 fn clear_ways(scene: &Scene, renderer: &mut Renderer) -> Table {

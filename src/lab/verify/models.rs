@@ -74,8 +74,9 @@ pub(super) fn sun_grids(renderer: &mut Renderer) -> Result<Finding, VerifyError>
             (scene.camera.east_m, scene.camera.pitch_deg) = (150_000.0, if height_m > top_m { -20.0 } else { 15.0 });
             // Enough steps that it is the grid which is compared, and not the first few steps before it.
             let with = |light_grid: u32| Quality { light_grid, light_steps: 24, ..quality() };
-            // The tallest clouds show little that is lit, much brighter than the rest: enough pixels that it is no chance.
-            let size = if top_m > 10_000.0 { [64, 36] } else { SIZE };
+            // Under the lowest sun the tallest clouds show little that is lit, much brighter than the rest: enough pixels
+            // that it is no chance.
+            let size = if top_m > 10_000.0 && (0.1..1.0).contains(&elevation_deg) { [64, 36] } else { SIZE };
             let [all, coarse, grid] = [0, 16, 160].map(|nodes| show_at(renderer, (&scene, &with(nodes)), size, 0.0));
             let (all, coarse, grid) = (all?, coarse?, grid?);
             if let Some(fault) = grid.fault().or_else(|| coarse.fault()) {

@@ -310,12 +310,9 @@ fn light_steps(usual: u32, thickness_m: f32, light_sine: f32) -> u32 {
 }
 
 /// Thickness of a layer up to which steps along the ray are as long as the quality says, and how many times as long they
-/// are in thick ones. The tallest clouds are as broad as they are tall: from where it is more they are as many times as long
-/// as the layer is thicker than this, and at most so many.
+/// are in the thickest.
 const USUAL_THICKNESS_M: f32 = 1200.0;
 const LONGEST_IN_THICK: f32 = 2.05;
-const TALL_M: f32 = 3000.0;
-const LONGEST_IN_TALL: f32 = 3.5;
 /// And how many times as long in the thinnest layer: of bodies from the map, and of a product of noises, whose surface has
 /// no erosion to be seen.
 const SHORTEST_IN_THIN_LAYERS: f32 = 0.85;
@@ -339,7 +336,6 @@ fn step_scale(layer: &CloudLayer, quality: &Quality) -> f32 {
     let is_product = layer.model == DensityModel::Product;
     let shortest = if is_product { SHORTEST_IN_THIN_PRODUCTS } else { SHORTEST_IN_THIN_LAYERS };
     let by_thickness = (thickness_m / USUAL_THICKNESS_M).sqrt().clamp(shortest, LONGEST_IN_THICK);
-    let by_thickness = by_thickness.max((thickness_m / TALL_M).min(LONGEST_IN_TALL));
     let by_extinction = (USUAL_EXTINCTION_PER_M / greatest_extinction(layer)).powf(0.25).clamp(1.0, LONGEST_IN_THIN);
     let slope_m = layer.edge_softness * layer.shape_size_m / layer.shape_strength.max(1e-3);
     let is_profile = layer.model == DensityModel::Profile;
